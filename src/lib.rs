@@ -1,0 +1,11 @@
+//! **quadmend** cleans up the connectivity of quad-dominant meshes.
+//!
+//! A polygon mesh is lifted to the √CC domain, where every vertex, face and edge becomes a
+//! p-vertex, a d-vertex and a quad; irregular vertices and faces are then the same kind of thing
+//! and are moved in pairs until they cancel (Peng & Wonka, *Connectivity Editing for
+//! Quad-Dominant Meshes*, 2013). Data flows one way:
+//! read → mesh → lift → plan → edit → lower → smooth → measure → write.
+
+pub mod knobs;
+pub mod mesh;
+pub mod watch;

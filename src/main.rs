@@ -1,0 +1,2 @@
+//! The `quadmend` command.
+fn main() {}

@@ -1,0 +1,10 @@
+//! Polygon meshes as the outside world knows them: points and faces of any degree.
+//!
+//! [`PolyMesh`] is plain storage and may hold any soup; [`Topology`] is the connectivity of that
+//! soup cut at its non-manifold places.
+
+mod polygon;
+mod topology;
+
+pub use polygon::{MeshError, Point, PolyMesh, Vector};
+pub use topology::{DisjointSets, NONE, Topology};

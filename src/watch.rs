@@ -1,0 +1,41 @@
+//! How long work reports its progress and learns that it should stop.
+//!
+//! Library code takes a [`Watch`] instead of printing or looking at a clock.
+
+/// A stage of the pipeline, for progress display and timings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Phase {
+    /// Reading and mending the input.
+    Read,
+    /// Preparing the reference surface.
+    Reference,
+    /// Searching for edits.
+    Plan,
+    /// Applying edits.
+    Edit,
+    /// Moving vertices.
+    Smooth,
+    /// Measuring before and after.
+    Measure,
+    /// Writing results.
+    Write,
+}
+
+/// Receiver of progress; asked regularly whether to go on.
+pub trait Watch: Sync {
+    /// `done` of `total` units of `phase` are finished; `irregular` elements are left if known.
+    fn progress(&self, phase: Phase, done: usize, total: usize, irregular: Option<usize>) {
+        let _ = (phase, done, total, irregular);
+    }
+
+    /// Whether the caller wants the best result so far instead of more work.
+    fn cancelled(&self) -> bool {
+        false
+    }
+}
+
+/// Watches nothing and never cancels.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Silent;
+
+impl Watch for Silent {}
