@@ -8,4 +8,6 @@
 
 pub mod knobs;
 pub mod mesh;
+pub mod ops;
+pub mod sqrtcc;
 pub mod watch;

@@ -4,6 +4,7 @@
 //! soup cut at its non-manifold places.
 
 mod polygon;
+pub mod shapes;
 mod topology;
 
 pub use polygon::{MeshError, Point, PolyMesh, Vector};

@@ -1,0 +1,245 @@
+//! Lifting a polygon mesh to Q: one quad an edge, in one pass over the corners.
+//!
+//! Corner c (half-edge a→b of face f) owns the half-edge f→a of the quad of its edge; the one
+//! before it in that quad is b→f, whose twin f→b belongs to the next corner of f. That is the
+//! whole construction; vertex v keeps its number and face f becomes vertex V + f.
+
+use super::QuadMesh;
+use super::quad_mesh::{FACE, GHOST, HELD, QuadKind};
+use crate::mesh::{NONE, Point, PolyMesh, Topology};
+use fixedbitset::FixedBitSet;
+use std::f64::consts::FRAC_PI_2;
+use thiserror::Error;
+
+/// Why a mesh cannot be lifted. [`crate::mesh`] mends all of these.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum LiftError {
+    /// Three or more faces on an edge.
+    #[error("an edge of face {face} has three or more faces; mend the mesh first")]
+    NonManifoldEdge {
+        /// One of the faces, from 0.
+        face: u32,
+    },
+    /// Several fans on a vertex, or a vertex twice in a face.
+    #[error("vertex {vertex} joins parts that share no edge; mend the mesh first")]
+    NonManifoldVertex {
+        /// The vertex, from 0.
+        vertex: u32,
+    },
+    /// Neighbouring faces run the same way along their edge.
+    #[error("face {face} and a neighbour are inconsistently oriented; mend the mesh first")]
+    Orientation {
+        /// One of the faces, from 0.
+        face: u32,
+    },
+    /// A face with fewer than three corners.
+    #[error("face {face} has fewer than three corners; mend the mesh first")]
+    DegenerateFace {
+        /// The face, from 0.
+        face: u32,
+    },
+    /// A vertex of no face.
+    #[error("vertex {vertex} belongs to no face; mend the mesh first")]
+    Isolated {
+        /// The vertex, from 0.
+        vertex: u32,
+    },
+}
+
+/// Lifts a clean polygon mesh to the √CC domain. `features` marks the corners whose edge is a
+/// sharp feature (either side suffices). O(corners).
+pub fn lift(mesh: &PolyMesh, features: &FixedBitSet) -> Result<QuadMesh, LiftError> {
+    let topology = Topology::new(mesh);
+    refuse_unclean(mesh, &topology)?;
+    let closed = Closed::new(mesh, &topology);
+    let mut q = closed.quad_mesh(mesh, features);
+    q.hold_frozen_ends();
+    q.set_ideals();
+    q.commit();
+    Ok(q)
+}
+
+fn refuse_unclean(mesh: &PolyMesh, topology: &Topology) -> Result<(), LiftError> {
+    if let Some(face) = mesh.faces().position(|f| f.len() < 3) {
+        return Err(LiftError::DegenerateFace { face: face as u32 });
+    }
+    if let Some(&h) = topology.nonmanifold_edges.first() {
+        return Err(LiftError::NonManifoldEdge { face: topology.face[h as usize] });
+    }
+    if let Some(h) = topology.same_direction.iter().position(|&same| same) {
+        return Err(LiftError::Orientation { face: topology.face[h] });
+    }
+    let mut fans = vec![0u32; mesh.vertex_count()];
+    for &v in &topology.fan_vertex {
+        fans[v as usize] += 1;
+    }
+    match fans.iter().position(|&n| n != 1) {
+        Some(v) if fans[v] == 0 => Err(LiftError::Isolated { vertex: v as u32 }),
+        Some(v) => Err(LiftError::NonManifoldVertex { vertex: v as u32 }),
+        None => Ok(()),
+    }
+}
+
+/// The mesh as closed corner arrays: a ghost triangle (b, a, apex) lies against each boundary
+/// half-edge a→b, all those of one loop around the same apex.
+struct Closed {
+    vertex: Vec<u32>,
+    next: Vec<u32>,
+    twin: Vec<u32>,
+    face: Vec<u32>,
+    faces: u32,
+    vertices: u32,
+    real_corners: u32,
+}
+
+impl Closed {
+    fn new(mesh: &PolyMesh, topology: &Topology) -> Self {
+        let real_corners = mesh.corner_count() as u32;
+        let mut closed = Self {
+            vertex: mesh.corners().to_vec(),
+            next: topology.next.clone(),
+            twin: topology.twin.clone(),
+            face: topology.face.clone(),
+            faces: mesh.face_count() as u32,
+            vertices: mesh.vertex_count() as u32,
+            real_corners,
+        };
+        let mut leaving = vec![NONE; mesh.vertex_count()];
+        for h in topology.boundary_half_edges() {
+            leaving[mesh.corners()[h as usize] as usize] = h;
+        }
+        for h in 0..real_corners {
+            if closed.twin[h as usize] == NONE {
+                closed.close_loop(h, &leaving);
+            }
+        }
+        closed
+    }
+
+    /// Ghosts along the boundary loop of `start`.
+    fn close_loop(&mut self, start: u32, leaving: &[u32]) {
+        let apex = self.vertices;
+        self.vertices += 1;
+        let first = self.vertex.len() as u32;
+        let mut h = start;
+        loop {
+            let (a, b) = (self.vertex[h as usize], self.vertex[self.next[h as usize] as usize]);
+            let ghost = self.vertex.len() as u32;
+            self.vertex.extend([b, a, apex]);
+            self.next.extend([ghost + 1, ghost + 2, ghost]);
+            // a→apex meets apex→a of the ghost before; the first one is set when the loop ends.
+            self.twin.extend([h, ghost.wrapping_sub(1), ghost + 4]);
+            self.face.extend([self.faces; 3]);
+            self.faces += 1;
+            self.twin[h as usize] = ghost;
+            h = leaving[b as usize];
+            if h == start {
+                self.twin[ghost as usize + 2] = first + 1;
+                self.twin[first as usize + 1] = ghost + 2;
+                return;
+            }
+        }
+    }
+
+    fn quad_mesh(&self, mesh: &PolyMesh, features: &FixedBitSet) -> QuadMesh {
+        let mut q = QuadMesh::default();
+        for v in 0..self.vertices {
+            let ghost = v as usize >= mesh.vertex_count();
+            let position = mesh.points().get(v as usize).copied().unwrap_or_else(Point::origin);
+            q.add_vertex(if ghost { GHOST } else { 0 }, 0, position);
+        }
+        for f in 0..self.faces {
+            let group = mesh.groups().get(f as usize);
+            let class = if group.is_some() { FACE } else { FACE | GHOST };
+            q.add_vertex(class, group.copied().unwrap_or(0), Point::origin());
+        }
+        let slots = self.add_quads(&mut q, features);
+        for (c, &slot) in slots.iter().enumerate() {
+            let f = self.vertices + self.face[c];
+            q.set_origin(slot, f);
+            q.set_origin(QuadMesh::next(slot), self.vertex[c]);
+            q.set_out(f, slot);
+            q.set_out(self.vertex[c], QuadMesh::next(slot));
+            q.join(slot - 1, slots[self.next[c] as usize]);
+            q.valence[f as usize] += 1;
+            q.valence[self.vertex[c] as usize] += 1;
+        }
+        q
+    }
+
+    /// A quad for each pair of twin corners; the half-edge face→vertex that each corner owns.
+    fn add_quads(&self, q: &mut QuadMesh, features: &FixedBitSet) -> Vec<u32> {
+        let mut slots = vec![NONE; self.vertex.len()];
+        for (c, &t) in self.twin.iter().enumerate() {
+            if slots[c] != NONE {
+                continue;
+            }
+            let quad = q.add_quad();
+            slots[c] = 4 * quad + 3;
+            slots[t as usize] = 4 * quad + 1;
+            q.kind[quad as usize] = self.edge_kind(c as u32, t, features) as u32;
+        }
+        slots
+    }
+
+    fn edge_kind(&self, c: u32, t: u32, features: &FixedBitSet) -> QuadKind {
+        let ghosts = u32::from(c >= self.real_corners) + u32::from(t >= self.real_corners);
+        match ghosts {
+            2 => QuadKind::Ghost,
+            1 => QuadKind::Boundary,
+            _ if features.contains(c as usize) || features.contains(t as usize) => {
+                QuadKind::Feature
+            }
+            _ => QuadKind::Free,
+        }
+    }
+}
+
+impl QuadMesh {
+    fn hold_frozen_ends(&mut self) {
+        for quad in 0..self.quad_ids() {
+            if self.is_frozen(quad) {
+                for h in [4 * quad, 4 * quad + 2] {
+                    self.class[self.origin[h as usize] as usize] |= HELD;
+                }
+            }
+        }
+    }
+
+    /// Measures each sector between frozen quads and notes its ideal number of faces.
+    fn set_ideals(&mut self) {
+        for v in 0..self.vertex_ids() {
+            if self.is_face(v) || self.is_ghost(v) || !self.is_held(v) {
+                continue;
+            }
+            let starts: Vec<u32> =
+                self.outgoing(v).filter(|&h| self.is_frozen(Self::quad(self.twin(h)))).collect();
+            for first in starts {
+                let quads = (self.sector_angle(first) / FRAC_PI_2).round().clamp(1.0, 8.0);
+                let slot = self.ideal_slot(first);
+                self.ideal[slot] = quads as u8;
+            }
+        }
+    }
+
+    /// Sum of the corner angles at the origin of `first` up to the next frozen quad, radians.
+    fn sector_angle(&self, first: u32) -> f64 {
+        let v = self.origin(first);
+        let arm = |p: u32| self.position(p) - self.position(v);
+        let (mut h, mut angle) = (first, 0.0);
+        loop {
+            // The corner of face target(h) at v lies between the edges of the two quads at h.
+            let before = self.origin(Self::opposite(Self::next(self.twin(h))));
+            let after = self.origin(Self::opposite(h));
+            let turn = arm(before).angle(&arm(after));
+            angle += if turn.is_finite() { turn } else { 0.0 };
+            if self.is_frozen(Self::quad(h)) {
+                return angle;
+            }
+            h = self.ccw(h);
+            if h == first {
+                return angle;
+            }
+        }
+    }
+}
