@@ -8,6 +8,7 @@
 
 pub mod knobs;
 pub mod mesh;
+pub mod moves;
 pub mod ops;
 pub mod sqrtcc;
 pub mod watch;
