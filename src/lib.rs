@@ -10,5 +10,7 @@ pub mod knobs;
 pub mod mesh;
 pub mod moves;
 pub mod ops;
+pub mod patch;
+pub mod planner;
 pub mod sqrtcc;
 pub mod watch;

@@ -1,0 +1,138 @@
+//! Where the new vertices of a filling go: Tutte transport.
+//!
+//! The old patch and the filling are both embedded in the unit disk with the same rim (Tutte
+//! 1963: each inner vertex at the mean of its neighbours); each new vertex takes the place that
+//! the old patch has under it. The start is then fold-free in the disk and follows the surface.
+
+use super::{Filling, Region};
+use crate::mesh::{Point, Vector};
+use crate::sqrtcc::{QuadMesh, Vertex};
+use nalgebra::{Point2, Vector2};
+use rustc_hash::FxHashMap;
+use std::f64::consts::TAU;
+
+type Plane = Point2<f64>;
+
+/// Places for the new vertices of `filling` on the surface of the old patch. `mesh` is as it was
+/// before the patch is replaced. O(n · √n) sweeps and O(n²) lookups for n vertices.
+#[must_use]
+pub fn transport(mesh: &QuadMesh, region: &Region, filling: &Filling) -> Vec<Point> {
+    let rim: Vec<Vertex> = region.rim.iter().map(|&h| mesh.target(h)).collect();
+    let circle = on_circle(&rim.iter().map(|&v| mesh.position(v)).collect::<Vec<_>>());
+    let old = OldPatch::new(mesh, region, &rim, &circle);
+    let neighbours = edges_of(filling);
+    let new = tutte(&circle, filling.interior as usize, &neighbours);
+    new[rim.len()..].iter().map(|&p| old.lift(p)).collect()
+}
+
+/// The rim on the unit circle, by length.
+fn on_circle(rim: &[Point]) -> Vec<Plane> {
+    let lengths: Vec<f64> =
+        (0..rim.len()).map(|i| (rim[(i + 1) % rim.len()] - rim[i]).norm()).collect();
+    let total: f64 = lengths.iter().sum();
+    let mut at = 0.0;
+    lengths
+        .iter()
+        .map(|&l| {
+            let angle = if total > 0.0 { TAU * at / total } else { 0.0 };
+            at += l;
+            Plane::new(angle.cos(), angle.sin())
+        })
+        .collect()
+}
+
+/// Embeds `inner` vertices numbered after the rim; `neighbours[i]` are those of inner vertex i.
+fn tutte(rim: &[Plane], inner: usize, neighbours: &[Vec<u32>]) -> Vec<Plane> {
+    const RELAXATION: f64 = 1.6;
+    let mut at = rim.to_vec();
+    at.resize(rim.len() + inner, Plane::origin());
+    let most = 40 + 12 * (inner as f64).sqrt() as usize;
+    for _ in 0..most {
+        let mut largest: f64 = 0.0;
+        for (i, near) in neighbours.iter().enumerate() {
+            let sum: Vector2<f64> = near.iter().map(|&j| at[j as usize].coords).sum();
+            let mean = sum / near.len().max(1) as f64;
+            let by = (mean - at[rim.len() + i].coords) * RELAXATION;
+            at[rim.len() + i] += by;
+            largest = largest.max(by.norm_squared());
+        }
+        if largest < 1e-10 {
+            break;
+        }
+    }
+    at
+}
+
+fn edges_of(filling: &Filling) -> Vec<Vec<u32>> {
+    let mut neighbours = vec![Vec::new(); filling.interior as usize];
+    for face in filling.faces() {
+        for (i, &a) in face.iter().enumerate() {
+            if a >= filling.rim {
+                neighbours[(a - filling.rim) as usize].push(face[(i + 1) % face.len()]);
+            }
+        }
+    }
+    neighbours
+}
+
+/// The old patch in the disk, cut into triangles around the middle of each face.
+struct OldPatch {
+    triangles: Vec<([Plane; 3], [Point; 3])>,
+}
+
+impl OldPatch {
+    fn new(mesh: &QuadMesh, region: &Region, rim: &[Vertex], circle: &[Plane]) -> Self {
+        let all = rim.iter().chain(&region.interior);
+        let number: FxHashMap<Vertex, u32> = all.zip(0..).map(|(&v, i)| (v, i)).collect();
+        let neighbours: Vec<Vec<u32>> = region
+            .interior
+            .iter()
+            .map(|&v| mesh.diagonals(v).filter_map(|w| number.get(&w).copied()).collect())
+            .collect();
+        let at = tutte(circle, region.interior.len(), &neighbours);
+        let mut triangles = Vec::with_capacity(4 * region.faces.len());
+        for &f in &region.faces {
+            let corners: Vec<(Plane, Point)> = mesh
+                .neighbours(f)
+                .filter_map(|v| number.get(&v).map(|&i| (at[i as usize], mesh.position(v))))
+                .collect();
+            let n = corners.len() as f64;
+            let flat = Plane::from(corners.iter().map(|c| c.0.coords).sum::<Vector2<f64>>() / n);
+            let solid = Point::from(corners.iter().map(|c| c.1.coords).sum::<Vector>() / n);
+            for (i, a) in corners.iter().enumerate() {
+                let b = &corners[(i + 1) % corners.len()];
+                triangles.push(([flat, a.0, b.0], [solid, a.1, b.1]));
+            }
+        }
+        Self { triangles }
+    }
+
+    /// The point of the patch over `p`: in the triangle that contains it, or nearly does.
+    fn lift(&self, p: Plane) -> Point {
+        let mut best = (f64::NEG_INFINITY, Point::origin());
+        for (flat, solid) in &self.triangles {
+            let weights = barycentric(flat, p);
+            let inside = weights.iter().copied().fold(f64::INFINITY, f64::min);
+            if inside > best.0 {
+                let w = weights.map(|w| w.clamp(0.0, 1.0));
+                let sum: f64 = w.iter().sum();
+                let at: Vector = (0..3).map(|i| solid[i].coords * (w[i] / sum)).sum();
+                best = (inside, Point::from(at));
+                if inside >= 0.0 {
+                    break;
+                }
+            }
+        }
+        best.1
+    }
+}
+
+fn barycentric([a, b, c]: &[Plane; 3], p: Plane) -> [f64; 3] {
+    let cross = |u: Vector2<f64>, v: Vector2<f64>| u.x * v.y - u.y * v.x;
+    let area = cross(b - a, c - a);
+    if area.abs() < 1e-300 {
+        return [f64::NEG_INFINITY; 3];
+    }
+    let (wb, wc) = (cross(p - a, c - a) / area, cross(b - a, p - a) / area);
+    [1.0 - wb - wc, wb, wc]
+}

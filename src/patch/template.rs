@@ -1,0 +1,442 @@
+//! Fillings of a disk whose rim has k corners and sides of given lengths.
+//!
+//! Three and five corners take one irregular element in the middle, with a spoke to each side:
+//! side a_i = L_{i−1} + L_{i+1}. Integer spokes (even perimeter) meet in a vertex (v3, v5),
+//! half-integer ones (odd perimeter) in a face (f3, f5); a pure-quad mesher has to refuse those.
+//! Four corners with equal opposite sides are a grid. Two, six, and four that do not close are cut
+//! by a chord into two of the former.
+//!
+//! ```text
+//!    corner i+1 ─── side i ─── foot of spoke i ─── corner i
+//!        │                         │                  │
+//!        │        block i+1        │ L_i    block i   │ side i−1
+//!        └───────── L_{i+1} ─── centre ─── L_{i−1} ───┘
+//! ```
+
+use serde::Serialize;
+
+/// A polygonal disk: rim vertices 0…n−1 in order, then new ones.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+pub struct Filling {
+    /// Number of rim vertices.
+    pub rim: u32,
+    /// Number of new vertices.
+    pub interior: u32,
+    /// Where the corners of each face begin; one entry more than there are faces.
+    pub offsets: Vec<u32>,
+    /// The vertices of the faces, counter-clockwise.
+    pub corners: Vec<u32>,
+}
+
+impl Filling {
+    fn new(rim: u32) -> Self {
+        Self { rim, interior: 0, offsets: vec![0], corners: Vec::new() }
+    }
+
+    fn vertex(&mut self) -> u32 {
+        self.interior += 1;
+        self.rim + self.interior - 1
+    }
+
+    fn face(&mut self, corners: impl IntoIterator<Item = u32>) {
+        self.corners.extend(corners);
+        self.offsets.push(self.corners.len() as u32);
+    }
+
+    /// The faces, each as its vertices.
+    pub fn faces(&self) -> impl ExactSizeIterator<Item = &[u32]> + '_ {
+        self.offsets.windows(2).map(|w| &self.corners[w[0] as usize..w[1] as usize])
+    }
+}
+
+/// A polygon to fill: its rim, and which of the rim vertices are corners (sorted positions).
+#[derive(Debug, Clone)]
+struct Polygon {
+    rim: Vec<u32>,
+    corners: Vec<usize>,
+}
+
+impl Polygon {
+    fn sides(&self) -> Vec<u32> {
+        let (k, n) = (self.corners.len(), self.rim.len());
+        (0..k)
+            .map(|i| ((self.corners[(i + 1) % k] + n - self.corners[i] - 1) % n + 1) as u32)
+            .collect()
+    }
+
+    /// Rim vertex at `offset` from corner `i`, in either direction.
+    fn at(&self, i: usize, offset: i64) -> u32 {
+        let n = self.rim.len() as i64;
+        self.rim[(self.corners[i] as i64 + offset).rem_euclid(n) as usize]
+    }
+}
+
+/// The few best fillings of a rim of `n` vertices with corners at the given positions, the most
+/// evenly proportioned first; none if no template fits. O(n²) for the chords tried.
+#[must_use]
+pub fn fillings(n: usize, corners: &[usize], most: usize) -> Vec<Filling> {
+    let whole = Polygon { rim: (0..n as u32).collect(), corners: corners.to_vec() };
+    let simple = |polygon: &Polygon| {
+        let mut filling = Filling::new(n as u32);
+        fill(polygon, &mut filling).map(|()| filling)
+    };
+    match corners.len() {
+        3..=5 if is_simple(&whole.sides()) => simple(&whole).into_iter().collect(),
+        2 | 4 | 6 => chords(&whole, most)
+            .into_iter()
+            .filter_map(|chord| {
+                let mut filling = Filling::new(n as u32);
+                let parts = split(&whole, chord, &mut filling);
+                parts.iter().try_for_each(|part| fill(part, &mut filling))?;
+                Some(filling)
+            })
+            .collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// Twice the spoke lengths; `None` unless all are positive (and a grid closes).
+fn double_spokes(sides: &[u32]) -> Option<Vec<u32>> {
+    let k = sides.len();
+    let a = |i: usize, by: usize| i64::from(sides[(i + by) % k]);
+    let doubled: Vec<i64> = match k {
+        3 => (0..3).map(|i| a(i, 1) + a(i, 2) - a(i, 0)).collect(),
+        5 => (0..5).map(|i| a(i, 0) + a(i, 1) + a(i, 4) - a(i, 2) - a(i, 3)).collect(),
+        _ => return None,
+    };
+    doubled.iter().all(|&l| l > 0).then(|| doubled.iter().map(|&l| l as u32).collect())
+}
+
+fn is_simple(sides: &[u32]) -> bool {
+    match sides {
+        [a, b, c, d] => a == c && b == d,
+        _ => double_spokes(sides).is_some(),
+    }
+}
+
+fn fill(polygon: &Polygon, filling: &mut Filling) -> Option<()> {
+    let sides = polygon.sides();
+    if let [a, b, c, d] = sides[..] {
+        return (a == c && b == d).then(|| grid(polygon, a, b, filling));
+    }
+    let doubled = double_spokes(&sides)?;
+    if doubled[0] % 2 == 0 {
+        around_vertex(polygon, &doubled.iter().map(|l| l / 2).collect::<Vec<_>>(), filling);
+    } else {
+        around_face(polygon, &doubled.iter().map(|l| l / 2).collect::<Vec<_>>(), filling);
+    }
+    Some(())
+}
+
+fn grid(polygon: &Polygon, columns: u32, rows: u32, filling: &mut Filling) {
+    let mut ids = vec![0; ((columns + 1) * (rows + 1)) as usize];
+    let at = |u: u32, v: u32| (v * (columns + 1) + u) as usize;
+    for v in 0..=rows {
+        for u in 0..=columns {
+            ids[at(u, v)] = match (u, v) {
+                (u, 0) => polygon.at(0, i64::from(u)),
+                (0, v) => polygon.at(0, -i64::from(v)),
+                (u, v) if u == columns => polygon.at(1, i64::from(v)),
+                (u, v) if v == rows => polygon.at(3, -i64::from(u)),
+                _ => filling.vertex(),
+            };
+        }
+    }
+    for v in 0..rows {
+        for u in 0..columns {
+            filling
+                .face([(u, v), (u + 1, v), (u + 1, v + 1), (u, v + 1)].map(|(u, v)| ids[at(u, v)]));
+        }
+    }
+}
+
+/// Vertices of the block at corner `i`: `width` + 1 along side i, `height` + 1 along side i−1.
+struct Block {
+    width: u32,
+    ids: Vec<u32>,
+}
+
+impl Block {
+    fn new(
+        polygon: &Polygon,
+        i: usize,
+        width: u32,
+        height: u32,
+        mut inside: impl FnMut(u32, u32) -> u32,
+    ) -> Self {
+        let mut ids = Vec::with_capacity(((width + 1) * (height + 1)) as usize);
+        for v in 0..=height {
+            for u in 0..=width {
+                ids.push(match (u, v) {
+                    (u, 0) => polygon.at(i, i64::from(u)),
+                    (0, v) => polygon.at(i, -i64::from(v)),
+                    _ => inside(u, v),
+                });
+            }
+        }
+        Self { width, ids }
+    }
+
+    fn at(&self, u: u32, v: u32) -> u32 {
+        self.ids[(v * (self.width + 1) + u) as usize]
+    }
+
+    fn quads(&self, filling: &mut Filling) {
+        let height = self.ids.len() as u32 / (self.width + 1) - 1;
+        for v in 0..height {
+            for u in 0..self.width {
+                filling.face(
+                    [(u, v), (u + 1, v), (u + 1, v + 1), (u, v + 1)].map(|(u, v)| self.at(u, v)),
+                );
+            }
+        }
+    }
+}
+
+/// Integer spokes: neighbouring blocks share the vertices of the spoke between them.
+fn around_vertex(polygon: &Polygon, spokes: &[u32], filling: &mut Filling) {
+    let k = spokes.len();
+    let centre = filling.vertex();
+    let inner: Vec<Vec<u32>> =
+        spokes.iter().map(|&l| (1..l).map(|_| filling.vertex()).collect()).collect();
+    for i in 0..k {
+        let before = (i + k - 1) % k;
+        let (width, height) = (spokes[before], spokes[i]);
+        let block = Block::new(polygon, i, width, height, |u, v| match (u, v) {
+            (u, v) if u == width && v == height => centre,
+            (u, v) if u == width => inner[i][v as usize - 1],
+            (u, v) if v == height => inner[before][u as usize - 1],
+            _ => filling.vertex(),
+        });
+        block.quads(filling);
+    }
+}
+
+/// Half-integer spokes, given rounded down: neighbouring blocks are joined by a strip of quads,
+/// and the inmost corners of all blocks are the face in the middle.
+fn around_face(polygon: &Polygon, spokes: &[u32], filling: &mut Filling) {
+    let k = spokes.len();
+    let blocks: Vec<Block> = (0..k)
+        .map(|i| {
+            Block::new(polygon, i, spokes[(i + k - 1) % k], spokes[i], |_, _| filling.vertex())
+        })
+        .collect();
+    for i in 0..k {
+        let (here, there) = (&blocks[i], &blocks[(i + 1) % k]);
+        here.quads(filling);
+        let (width, height) = (here.width, spokes[(i + 1) % k]);
+        for t in 0..spokes[i] {
+            filling.face([
+                here.at(width, t),
+                there.at(t, height),
+                there.at(t + 1, height),
+                here.at(width, t + 1),
+            ]);
+        }
+    }
+    filling.face((0..k).map(|i| blocks[i].at(blocks[i].width, spokes[i])));
+}
+
+/// A cut from `start` on side `from` to `end` on side `to`, both counted from the start of the
+/// side, with `length` edges.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Chord {
+    from: usize,
+    start: u32,
+    to: usize,
+    end: u32,
+    length: u32,
+}
+
+impl Chord {
+    /// Side lengths of the part on the left of the chord's way back, and of the part on the other.
+    fn parts(&self, sides: &[u32]) -> [Vec<u32>; 2] {
+        let k = sides.len();
+        let walk = |from: usize, start: u32, to: usize, end: u32| {
+            let mut lengths = vec![sides[from] - start];
+            let mut i = (from + 1) % k;
+            while i != to {
+                lengths.push(sides[i]);
+                i = (i + 1) % k;
+            }
+            lengths.push(end);
+            lengths.push(self.length);
+            lengths
+        };
+        [
+            walk(self.from, self.start, self.to, self.end),
+            walk(self.to, self.end, self.from, self.start),
+        ]
+    }
+}
+
+/// The best chords: both parts must be simple, and the shorter their longest spoke is relative to
+/// the shortest, the better.
+fn chords(polygon: &Polygon, most: usize) -> Vec<Chord> {
+    let sides = polygon.sides();
+    let k = sides.len();
+    let pairs: Vec<(usize, usize)> = match k {
+        2 => vec![(0, 1)],
+        4 => (0..4).map(|i| (i, (i + 1) % 4)).collect(),
+        _ => (0..3).map(|i| (i, i + 3)).collect(),
+    };
+    let mut scored = Vec::new();
+    for (from, to) in pairs {
+        for start in 1..sides[from] {
+            for end in 1..sides[to] {
+                let apart = sides[from] - start + end;
+                for length in 1..=apart.max(2) + 2 {
+                    let chord = Chord { from, start, to, end, length };
+                    let [one, other] = chord.parts(&sides);
+                    if let (Some(a), Some(b)) = (double_spokes(&one), double_spokes(&other)) {
+                        scored.push((imbalance(&a, &b, length), chord));
+                    }
+                }
+            }
+        }
+    }
+    scored.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+    distinct(scored, most)
+}
+
+/// How uneven a pair of parts is: the mean squared deviation of the spokes from their mean, plus
+/// a little for long chords.
+fn imbalance(a: &[u32], b: &[u32], length: u32) -> f64 {
+    let spread = |l: &[u32]| {
+        let mean = f64::from(l.iter().sum::<u32>()) / l.len() as f64;
+        l.iter().map(|&x| (f64::from(x) - mean).powi(2)).sum::<f64>() / l.len() as f64
+    };
+    spread(a) + spread(b) + 0.01 * f64::from(length)
+}
+
+/// The first few that do not give the same two sets of spokes.
+fn distinct(scored: Vec<(f64, Chord)>, most: usize) -> Vec<Chord> {
+    let mut chosen: Vec<(f64, Chord)> = Vec::new();
+    for (score, chord) in scored {
+        if chosen.len() == most {
+            break;
+        }
+        if chosen.iter().all(|(s, _)| (s - score).abs() > 0.3) {
+            chosen.push((score, chord));
+        }
+    }
+    chosen.into_iter().map(|(_, chord)| chord).collect()
+}
+
+/// Cuts a polygon along a chord, whose inner vertices are new.
+fn split(polygon: &Polygon, chord: Chord, filling: &mut Filling) -> [Polygon; 2] {
+    let n = polygon.rim.len();
+    let a = (polygon.corners[chord.from] + chord.start as usize) % n;
+    let b = (polygon.corners[chord.to] + chord.end as usize) % n;
+    let inner: Vec<u32> = (1..chord.length).map(|_| filling.vertex()).collect();
+    let part = |from: usize, to: usize, way_back: Vec<u32>| {
+        let mut positions = vec![from];
+        while positions.last() != Some(&to) {
+            positions.push((positions[positions.len() - 1] + 1) % n);
+        }
+        let corners = (0..positions.len())
+            .filter(|&i| {
+                i == 0 || i + 1 == positions.len() || polygon.corners.contains(&positions[i])
+            })
+            .collect();
+        let rim = positions.iter().map(|&p| polygon.rim[p]).chain(way_back).collect();
+        Polygon { rim, corners }
+    };
+    let reversed = inner.iter().rev().copied().collect();
+    [part(a, b, reversed), part(b, a, inner)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+
+    /// Irregularity inside a filling: new vertices and all faces; checks that it is a disk.
+    fn irregularity(filling: &Filling) -> u32 {
+        let mut edges = BTreeMap::<(u32, u32), u32>::new();
+        let mut valence = vec![0; (filling.rim + filling.interior) as usize];
+        for face in filling.faces() {
+            for (i, &a) in face.iter().enumerate() {
+                let b = face[(i + 1) % face.len()];
+                assert_ne!(a, b);
+                assert!(edges.insert((a, b), 1).is_none(), "edge {a}-{b} twice the same way");
+                valence[a as usize] += 1;
+            }
+        }
+        let rim_edges =
+            (0..filling.rim).filter(|&i| edges.contains_key(&(i, (i + 1) % filling.rim))).count();
+        assert_eq!(rim_edges, filling.rim as usize, "the rim is whole");
+        let open = edges.keys().filter(|&&(a, b)| !edges.contains_key(&(b, a))).count();
+        assert_eq!(open, filling.rim as usize, "only the rim is open");
+        let (v, e, f) = (
+            i64::from(filling.rim + filling.interior),
+            (edges.len() as i64 + i64::from(filling.rim)) / 2,
+            filling.offsets.len() as i64 - 1,
+        );
+        assert_eq!(v - e + f, 1, "a disk");
+        let vertices: u32 =
+            valence[filling.rim as usize..].iter().map(|&n: &u32| n.abs_diff(4)).sum();
+        vertices + filling.faces().map(|f| (f.len() as u32).abs_diff(4)).sum::<u32>()
+    }
+
+    fn rim(sides: &[u32]) -> (usize, Vec<usize>) {
+        let starts = sides.iter().scan(0, |at, &s| {
+            let start = *at;
+            *at += s as usize;
+            Some(start)
+        });
+        (sides.iter().sum::<u32>() as usize, starts.collect())
+    }
+
+    fn best(sides: &[u32]) -> Option<Filling> {
+        let (n, corners) = rim(sides);
+        fillings(n, &corners, 3).into_iter().next()
+    }
+
+    #[test]
+    fn a_rectangle_that_closes_is_regular() {
+        for sides in [[1, 1, 1, 1], [3, 5, 3, 5], [7, 2, 7, 2]] {
+            assert_eq!(irregularity(&best(&sides).unwrap()), 0, "{sides:?}");
+        }
+    }
+
+    #[test]
+    fn three_and_five_corners_take_one_element_of_either_parity() {
+        for sides in [
+            &[1, 1, 1][..],
+            &[2, 2, 2],
+            &[3, 4, 5],
+            &[3, 4, 4],
+            &[1, 1, 1, 1, 1],
+            &[2, 2, 2, 2, 2],
+            &[3, 2, 4, 3, 2],
+            &[2, 3, 3, 2, 3],
+        ] {
+            let filling = best(sides).unwrap_or_else(|| panic!("{sides:?}"));
+            assert_eq!(irregularity(&filling), 1, "{sides:?}");
+            let odd = sides.iter().sum::<u32>() % 2 == 1;
+            let by_face = filling.faces().any(|f| f.len() != 4);
+            assert_eq!(odd, by_face, "{sides:?}: an odd perimeter takes a face");
+        }
+    }
+
+    #[test]
+    fn rectangles_that_do_not_close_two_and_six_corners_take_two() {
+        for sides in
+            [&[4, 5, 5, 5][..], &[4, 4, 6, 5], &[6, 6], &[3, 3, 3, 3, 3, 3], &[4, 3, 4, 4, 3, 5]]
+        {
+            let (n, corners) = rim(sides);
+            let all = fillings(n, &corners, 3);
+            assert!(!all.is_empty(), "{sides:?}");
+            for filling in all {
+                assert_eq!(irregularity(&filling), 2, "{sides:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn sides_that_no_template_fits_are_refused() {
+        assert!(best(&[1, 1, 2]).is_none());
+        assert!(best(&[1, 1, 9]).is_none());
+    }
+}

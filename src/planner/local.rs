@@ -1,0 +1,100 @@
+//! Local reductions: single operations, and pairs of them, after which E is smaller.
+
+use crate::ops::{Collapse, Flip, MIN_VALENCE, Op, Split, Turn};
+use crate::sqrtcc::{HalfEdge, QuadMesh, Vertex};
+
+/// The sequences of one operation near `seed` that lower E, or else of two; best first.
+/// `mesh` is as before afterwards. O(valence²) probes for one operation, squared for two.
+pub fn reductions(mesh: &mut QuadMesh, seed: Vertex, depth: u32) -> Vec<(i32, Vec<Op>)> {
+    let mut found = Vec::new();
+    let near = operations(mesh, seed);
+    for &op in &near {
+        if let Ok(legal) = op.check(mesh) {
+            if legal.delta() < 0 {
+                found.push((legal.delta(), vec![op]));
+            }
+        }
+    }
+    if found.is_empty() && depth >= 2 {
+        for &op in &near {
+            pairs(mesh, op, &mut found);
+        }
+    }
+    found.sort();
+    found.dedup();
+    found
+}
+
+/// Extends `first` by every second operation around what it touched.
+fn pairs(mesh: &mut QuadMesh, first: Op, found: &mut Vec<(i32, Vec<Op>)>) {
+    let mark = mesh.mark();
+    // A first operation that costs four cannot be made good by one more.
+    let Ok(legal) = first
+        .check(mesh)
+        .and_then(|l| if l.delta() <= 2 { Ok(l) } else { Err(crate::ops::Refusal::Valence) })
+    else {
+        return;
+    };
+    let cost = legal.delta();
+    Op::apply(mesh, legal);
+    for v in mesh.touched_since(mark) {
+        if !mesh.is_alive(v) || mesh.irregularity(v) == 0 {
+            continue;
+        }
+        for second in operations(mesh, v) {
+            if let Ok(legal) = second.check(mesh) {
+                if cost + legal.delta() < 0 {
+                    found.push((cost + legal.delta(), vec![first, second]));
+                }
+            }
+        }
+    }
+    mesh.undo_to(mark);
+}
+
+/// Every operation that can change the valence of `v`; not yet checked.
+fn operations(mesh: &QuadMesh, v: Vertex) -> Vec<Op> {
+    let mut ops = Vec::with_capacity(64);
+    if mesh.is_ghost(v) || mesh.valence(v) > 16 {
+        return ops;
+    }
+    for h in mesh.outgoing(v) {
+        ops.push(Op::Collapse(Collapse { edge: h }));
+        ops.push(Op::Collapse(Collapse { edge: QuadMesh::next(h) }));
+        for edge in [h, QuadMesh::next(h), QuadMesh::opposite(h)] {
+            for turn in [Turn::Ccw, Turn::Cw] {
+                ops.push(Op::Flip(Flip { edge, turn }));
+            }
+        }
+        splits_beside(mesh, h, &mut ops);
+    }
+    splits_of(mesh, v, &mut ops);
+    ops
+}
+
+/// Splits of `v` itself into two of at least three edges each.
+fn splits_of(mesh: &QuadMesh, v: Vertex, ops: &mut Vec<Op>) {
+    let half = mesh.valence(v) / 2;
+    for first in mesh.outgoing(v) {
+        let mut last = mesh.ccw(first);
+        for _ in MIN_VALENCE - 1..=half {
+            last = mesh.ccw(last);
+            ops.push(Op::Split(Split { first, last }));
+        }
+    }
+}
+
+/// Splits of the neighbour at the end of `h` by which `v` gains an edge.
+fn splits_beside(mesh: &QuadMesh, h: HalfEdge, ops: &mut Vec<Op>) {
+    let t = mesh.twin(h);
+    let n = mesh.valence(mesh.origin(t));
+    if n < 4 || n > 16 {
+        return;
+    }
+    let mut other = mesh.ccw(t);
+    for _ in 0..n - 3 {
+        other = mesh.ccw(other);
+        ops.push(Op::Split(Split { first: t, last: other }));
+        ops.push(Op::Split(Split { first: other, last: t }));
+    }
+}
