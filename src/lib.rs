@@ -13,4 +13,5 @@ pub mod ops;
 pub mod patch;
 pub mod planner;
 pub mod sqrtcc;
+pub mod surface;
 pub mod watch;
