@@ -250,7 +250,7 @@ fn unreadable_files_are_told() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("secret.obj");
     std::fs::write(&path, SQUARE).unwrap();
-    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0)).unwrap();
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o000)).unwrap();
     // The superuser may read it all the same.
     if std::fs::read(&path).is_err() {
         let error = io::read(&path).unwrap_err();

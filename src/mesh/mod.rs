@@ -3,8 +3,12 @@
 //! [`PolyMesh`] is plain storage and may hold any soup; [`Topology`] is the connectivity of that
 //! soup cut at its non-manifold places.
 
+mod check;
+mod mend;
 mod polygon;
 mod topology;
 
+pub use check::{Flaw, check};
+pub use mend::{Mend, MendError, MendKind, MendPolicy, MendReport, mend};
 pub use polygon::{MeshError, Point, PolyMesh, Vector};
 pub use topology::{DisjointSets, NONE, Topology};
