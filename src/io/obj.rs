@@ -130,20 +130,23 @@ fn build(bytes: &[u8], feed: &mut Feed<'_>, model: tobj::Mesh) -> Result<PolyMes
         return Err(not_finite(bytes, at / 3, at % 3));
     }
     let points = model.positions.chunks_exact(3).map(|p| Point::new(p[0], p[1], p[2])).collect();
+    let offsets = offsets(&model.face_arities, feed.groups.len());
     let mut corners = model.indices;
-    // Without arities everything is a triangle, the anchor too.
-    let degree = |f: usize| model.face_arities.get(f + 1).map_or(3, |&d| d);
     corners.drain(..vertices);
-    let mut offsets = Vec::with_capacity(feed.groups.len() + 1);
-    offsets.push(0_u32);
-    let mut end = 0_u32;
-    offsets.extend((0..feed.groups.len()).map(|f| {
-        end = end.wrapping_add(degree(f));
-        end
-    }));
     let mesh = PolyMesh::from_rows(points, offsets, corners).map_err(|e| (None, e.into()))?;
     let (groups, names) = (std::mem::take(&mut feed.groups), std::mem::take(&mut feed.group_names));
     Ok(mesh.with_groups(groups, names))
+}
+
+/// Where each face begins. Without arities everything is a triangle, the anchor in front too.
+fn offsets(arities: &[u32], faces: usize) -> Vec<u32> {
+    let mut end = 0_u32;
+    let ends = (1..=faces).map(|f| {
+        // More corners than fit are refused where the mesh is built.
+        end = end.wrapping_add(arities.get(f).map_or(3, |&d| d));
+        end
+    });
+    std::iter::once(0).chain(ends).collect()
 }
 
 /// Names the line of a coordinate; only errors pay for the search.

@@ -62,7 +62,14 @@ pub(super) fn reduce(corners: &[u32], face: &mut Vec<u32>) -> (usize, usize) {
             face.push(v);
         }
     }
-    // The same where the cycle closes; `start` corners have gone at the front.
+    let (more_repeats, more_spurs) = reduce_seam(face);
+    (repeats + more_repeats, spurs + more_spurs)
+}
+
+/// Does the same where the cycle closes, from its last corner to its first.
+fn reduce_seam(face: &mut Vec<u32>) -> (usize, usize) {
+    let (mut repeats, mut spurs) = (0, 0);
+    // So many corners have gone at the front.
     let mut start = 0;
     loop {
         match face[start..] {
