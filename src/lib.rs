@@ -8,5 +8,6 @@
 
 pub mod knobs;
 pub mod mesh;
+pub mod smooth;
 pub mod surface;
 pub mod watch;
