@@ -8,4 +8,5 @@
 
 pub mod knobs;
 pub mod mesh;
+pub mod metrics;
 pub mod watch;
