@@ -9,4 +9,5 @@
 pub mod knobs;
 pub mod mesh;
 pub mod metrics;
+pub mod surface;
 pub mod watch;

@@ -1,0 +1,19 @@
+//! The reference surface: triangles that say where the shape is.
+//!
+//! [`Reference`] answers closest-point queries, gives samples for distances and holds the creases
+//! from which [`SharpLines`] are made. A reference may itself be a polygon mesh; it is
+//! triangulated, while its creases are judged between polygons, so that the fold of a warped quad
+//! is no feature.
+
+mod features;
+mod reference;
+mod samples;
+mod tree;
+#[cfg(test)]
+pub(crate) mod trial;
+mod triangulation;
+
+pub use features::{Crease, FeatureOptions, SharpLines, mean_edge, mesh_features};
+pub use reference::{Hit, Reference, SurfaceError};
+pub use samples::{Deviation, deviation, sample_triangles};
+pub use triangulation::{Triangulation, triangulate};

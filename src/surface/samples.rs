@@ -1,0 +1,105 @@
+//! Evenly spread points of a surface, and distances measured with them.
+//!
+//! Samples are stratified along the running sum of areas and placed in their triangle by the
+//! two-dimensional additive sequence of Roberts (*The unreasonable effectiveness of
+//! quasirandom sequences*, 2018); nothing is random.
+
+use rayon::prelude::*;
+
+use super::reference::Reference;
+use crate::mesh::Point;
+
+/// About evenly spread points of some triangles, `count` of them unless the area is zero.
+/// O(triangles + count).
+#[must_use]
+pub fn sample_triangles(points: &[Point], triangles: &[[u32; 3]], count: usize) -> Vec<Point> {
+    let corners = |t: &[u32; 3]| t.map(|v| points[v as usize]);
+    let area = |t: &[u32; 3]| {
+        let [a, b, c] = corners(t);
+        (b - a).cross(&(c - a)).norm() * 0.5
+    };
+    let total: f64 = triangles.iter().map(area).sum();
+    let (mut out, mut done) = (Vec::with_capacity(count), 0.0);
+    for t in triangles {
+        done += area(t);
+        // Sample i stands in the middle of its share of the area, (i + 1/2) / count.
+        while out.len() < count && (out.len() as f64 + 0.5) * total < done * count as f64 {
+            let place = place_in_triangle(out.len(), &corners(t));
+            out.push(place);
+        }
+    }
+    out
+}
+
+/// Sample number `i` put at a place of the triangle that looks random.
+fn place_in_triangle(i: usize, [a, b, c]: &[Point; 3]) -> Point {
+    // Powers of the inverse of the plastic number, the real root of x^3 = x + 1.
+    const STEP: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
+    let [u, v] = STEP.map(|s| (0.5 + s * (i + 1) as f64).fract());
+    let (r, s) = (u.sqrt(), v);
+    Point::from(a.coords * (1.0 - r) + b.coords * (r * (1.0 - s)) + c.coords * (r * s))
+}
+
+/// How far two surfaces are apart, both ways, in the units of the file.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Deviation {
+    /// Largest distance of a sample to the other surface, either way.
+    pub hausdorff: f64,
+    /// Root mean square distance of the samples, the larger of both ways.
+    pub rms: f64,
+}
+
+/// Distances from samples and vertices of each surface to the other. `count` samples each way.
+/// O((count + vertices) log n), in parallel; independent of the number of threads.
+#[must_use]
+pub fn deviation(surface: &Reference, other: &Reference, count: usize) -> Deviation {
+    let (there, back) = (one_way(surface, other, count), one_way(other, surface, count));
+    Deviation { hausdorff: there.hausdorff.max(back.hausdorff), rms: there.rms.max(back.rms) }
+}
+
+/// Distances from samples and corners of `from` to `to`.
+fn one_way(from: &Reference, to: &Reference, count: usize) -> Deviation {
+    let distances: Vec<f64> =
+        to.closest_many(&from.samples(count)).iter().map(|h| h.distance).collect();
+    let corners: Vec<Point> = {
+        let mut used: Vec<u32> = from.triangles().iter().flatten().copied().collect();
+        used.sort_unstable();
+        used.dedup();
+        used.iter().map(|&v| from.points()[v as usize]).collect()
+    };
+    let at_corners =
+        to.closest_many(&corners).par_iter().map(|h| h.distance).reduce(|| 0.0, f64::max);
+    let squares: f64 = distances.iter().map(|d| d * d).sum();
+    Deviation {
+        hausdorff: distances.iter().copied().fold(at_corners, f64::max),
+        rms: (squares / distances.len().max(1) as f64).sqrt(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::PolyMesh;
+
+    fn square(z: f64) -> PolyMesh {
+        let corners = [[0.0, 0.0, z], [3.0, 0.0, z], [3.0, 1.0, z], [0.0, 1.0, z]];
+        PolyMesh::new(corners.map(Point::from).to_vec(), [[0, 1, 2, 3]]).unwrap()
+    }
+
+    #[test]
+    fn samples_are_spread_by_area() {
+        let surface = Reference::new(&square(0.0)).unwrap();
+        let samples = surface.samples(1200);
+        assert_eq!(samples.len(), 1200);
+        let left = samples.iter().filter(|p| p.x < 1.0).count();
+        assert!((380..=420).contains(&left), "{left} of 1200 are in the left third");
+        assert!(samples.iter().all(|p| surface.closest(p).distance < 1e-14));
+    }
+
+    #[test]
+    fn deviation_of_shifted_squares_is_the_shift() {
+        let surfaces = [0.0, 0.25].map(|z| Reference::new(&square(z)).unwrap());
+        let d = deviation(&surfaces[0], &surfaces[1], 100);
+        assert_eq!(d, Deviation { hausdorff: 0.25, rms: 0.25 });
+    }
+}
