@@ -4,7 +4,7 @@
 //! Where the data, Python, numpy or scipy are missing the test says so and passes.
 
 use quadmend::mesh::{Point, PolyMesh};
-use quadmend::metrics;
+use quadmend::metrics::{self, MeasureOptions, Target};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -142,11 +142,68 @@ fn counts_and_qualities_agree_with_the_checker() {
     for name in checker.names() {
         let path = checker.path(&name, ".obj");
         let theirs = checker.measure(&path, None);
-        let ours = metrics::measure(&read(&path)).expect("the mesh has faces");
+        let ours = metrics::measure(&read(&path), None).expect("the mesh has faces");
         let ours = serde_json::to_value(ours).expect("metrics are JSON");
         for part in ["topology", "quality", "summary"] {
             compare(&format!("{name}.{part}"), &ours[part], &theirs[part], &mut faults);
         }
+    }
+    assert!(faults.is_empty(), "{} differences:\n{}", faults.len(), faults.join("\n"));
+}
+
+/// How far a number may be from one that the checker finds with random samples or, for curves,
+/// with a search among near pieces. `None`: it is not compared.
+fn tolerance(key: &str) -> Option<f64> {
+    match key {
+        "distance_backend" => None,
+        "hausdorff" => Some(0.05),
+        "flipped_faces" | "flipped_share" => Some(0.1),
+        "rms" | "mean" | "ref_to_mesh_mean" | "mesh_to_ref_mean" | "max" | "p95" => Some(0.02),
+        "mean_in_edge_lengths" | "share_within_0_1_edge" => Some(0.02),
+        _ => Some(RELATIVE),
+    }
+}
+
+fn compare_reference(at: &str, ours: &Value, theirs: &Value, faults: &mut Vec<String>) {
+    let (Value::Object(a), Value::Object(b)) = (ours, theirs) else {
+        return faults.push(format!("{at}: {ours} here, {theirs} there"));
+    };
+    assert!(a.keys().eq(b.keys()) || a.len() == b.len(), "{at}: {a:?} here, {b:?} there");
+    for (key, x) in a {
+        let (at, y) = (format!("{at}.{key}"), &b[key]);
+        let Some(tolerance) = tolerance(key) else { continue };
+        match (x.as_f64(), y.as_f64()) {
+            (Some(x), Some(y)) if near(x, y, tolerance) => {}
+            (Some(x), Some(y)) => faults.push(format!("{at}: {x} here, {y} there")),
+            _ if x == y => {}
+            _ => compare_reference(&at, x, y, faults),
+        }
+    }
+}
+
+#[test]
+fn distances_agree_with_the_checker() {
+    let checker = match Checker::find() {
+        Ok(checker) if python_has(&["igl"]) => checker,
+        Ok(_) => return skip("distances need libigl"),
+        Err(why) => return skip(&why),
+    };
+    let mut faults = Vec::new();
+    for name in [
+        "spot_im3k",
+        "blub_im6k",
+        "wingnut_im4k",
+        "plate_gmsh",
+        "mountain_im15k",
+        "featuretype_im6k",
+    ] {
+        let (path, reference) = (checker.path(name, ".obj"), checker.path(name, ".ref.obj"));
+        let theirs = checker.measure(&path, Some(&reference));
+        let target = Target::new(&read(&reference), &MeasureOptions::default());
+        let target = target.expect("the reference is a surface");
+        let ours = metrics::measure(&read(&path), Some(&target)).expect("the mesh has faces");
+        let ours = serde_json::to_value(ours).expect("metrics are JSON");
+        compare_reference(name, &ours["reference"], &theirs["reference"], &mut faults);
     }
     assert!(faults.is_empty(), "{} differences:\n{}", faults.len(), faults.join("\n"));
 }

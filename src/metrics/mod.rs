@@ -1,4 +1,4 @@
-//! What a mesh is like, in numbers: connectivity, irregularity, quality.
+//! What a mesh is like, in numbers: connectivity, irregularity, quality, distance to a reference.
 //!
 //! Every measure works on any soup of polygons: it is cut at its non-manifold places (see
 //! [`Topology`]) and degenerate faces are counted instead of refused. One file is one concept;
@@ -7,12 +7,15 @@
 mod angles;
 mod components;
 mod connectivity;
+mod curves;
 mod degenerate;
+mod distance;
 mod edges;
 mod gauss_bonnet;
 mod irregularity;
 mod jacobian;
 mod planarity;
+mod segments;
 mod shape;
 mod stats;
 mod summary;
@@ -23,7 +26,9 @@ mod tests;
 pub use angles::Angles;
 pub use components::ComponentRow;
 pub use connectivity::Connectivity;
+pub use curves::{Boundary, CurveDistance, Features};
 pub use degenerate::Degenerate;
+pub use distance::{MeshToReference, OneWay, Orientation, ReferenceMetrics, Target};
 pub use edges::EdgeLength;
 pub use gauss_bonnet::{GaussBonnet, LowerBounds};
 pub use irregularity::{Histogram, Irregular, Irregularity, irregular_elements};
@@ -32,7 +37,9 @@ pub use stats::Spread;
 pub use summary::{DegenerateSummary, Summary};
 pub use t_junctions::{TJunctions, matched_t_junctions};
 
+use crate::knobs::knobs;
 use crate::mesh::{PolyMesh, Topology};
+use crate::surface::SurfaceError;
 use components::Components;
 use serde::Serialize;
 use shape::Shape;
@@ -41,12 +48,28 @@ use thiserror::Error;
 /// Largest components that are listed.
 const LISTED_COMPONENTS: usize = 8;
 
+knobs! {
+    /// How meshes are measured against a reference.
+    pub struct MeasureOptions in "measure" {
+        /// Samples of each surface for distances.
+        samples: u32 = 200_000, in 1_000.0..=20_000_000.0, "samples";
+        /// Dihedral angle above which an edge of the reference counts as sharp in reports.
+        feature_angle_deg: f64 = 40.0, in 1.0..=180.0, "degrees";
+    }
+}
+
 /// Why a mesh can not be measured.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum MetricsError {
     /// There is nothing to measure.
     #[error("the mesh has no faces")]
     NoFaces,
+    /// The reference is no surface.
+    #[error(transparent)]
+    Reference(SurfaceError),
+    /// The mesh is no surface, so that no distance to it can be found.
+    #[error("no distance can be measured to the mesh: none of its faces has an area")]
+    Mesh(#[source] SurfaceError),
 }
 
 /// All that is measured about one mesh.
@@ -56,6 +79,9 @@ pub struct Metrics {
     pub topology: TopologyMetrics,
     /// Shape of the elements.
     pub quality: Quality,
+    /// Distances to the reference, if there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reference: Option<ReferenceMetrics>,
     /// The numbers one looks at first.
     pub summary: Summary,
 }
@@ -147,8 +173,9 @@ impl Quality {
     }
 }
 
-/// Measures a mesh. O(n log n) for n corners.
-pub fn measure(mesh: &PolyMesh) -> Result<Metrics, MetricsError> {
+/// Measures a mesh, and its distance to `target` if there is one. O(n log n) for n corners and
+/// samples, in parallel; the same for any number of threads.
+pub fn measure(mesh: &PolyMesh, target: Option<&Target>) -> Result<Metrics, MetricsError> {
     if mesh.face_count() == 0 {
         return Err(MetricsError::NoFaces);
     }
@@ -156,6 +183,7 @@ pub fn measure(mesh: &PolyMesh) -> Result<Metrics, MetricsError> {
     let shape = Shape::new(mesh, &topology);
     let counts = TopologyMetrics::new(mesh, &topology);
     let quality = Quality::new(&shape);
-    let summary = Summary::new(&counts, &quality);
-    Ok(Metrics { topology: counts, quality, summary })
+    let reference = target.map(|t| ReferenceMetrics::new(&shape, t)).transpose()?;
+    let summary = Summary::new(&counts, &quality, reference.as_ref());
+    Ok(Metrics { topology: counts, quality, reference, summary })
 }

@@ -1,4 +1,4 @@
-//! The geometry that several measures share: face normals, and at each corner its
+//! The geometry that several measures share: face normals and centres, and at each corner its
 //! angle and Jacobian. Computed once, in the order of the arrays.
 //!
 //! *Invariant:* nothing is guarded against degenerate faces; what a face of no area or an edge of
@@ -18,6 +18,8 @@ pub(super) struct Shape<'a> {
     pub(super) areas: Vec<f64>,
     /// Unit normal of each face; NaN where there is no area.
     pub(super) normals: Vec<Vector>,
+    /// Mean of the corners of each face.
+    pub(super) centres: Vec<Point>,
     /// Length of each half-edge.
     pub(super) lengths: Vec<f64>,
     /// Angle at each corner in degrees, above 180 where it is reflex.
@@ -29,8 +31,9 @@ pub(super) struct Shape<'a> {
 impl<'a> Shape<'a> {
     /// Computes it. O(n) for n corners, in parallel.
     pub(super) fn new(mesh: &'a PolyMesh, topology: &'a Topology) -> Self {
+        let faces = 0..mesh.face_count();
         let vectors: Vec<Vector> =
-            (0..mesh.face_count()).into_par_iter().map(|f| mesh.area_vector(f)).collect();
+            faces.clone().into_par_iter().map(|f| mesh.area_vector(f)).collect();
         let areas: Vec<f64> = vectors.iter().map(Vector::norm).collect();
         let normals: Vec<Vector> = vectors.iter().zip(&areas).map(|(v, a)| v / *a).collect();
         let corner = |c: usize| corner(mesh, topology, &normals, c);
@@ -39,6 +42,7 @@ impl<'a> Shape<'a> {
             mesh,
             topology,
             diagonal: mesh.diagonal(),
+            centres: faces.map(|f| mesh.centre(f)).collect(),
             lengths: corners.iter().map(|c| c.length).collect(),
             angles_deg: corners.iter().map(|c| c.angle_deg).collect(),
             jacobians: corners.iter().map(|c| c.jacobian).collect(),
@@ -60,6 +64,11 @@ impl<'a> Shape<'a> {
     /// Vertex at corner `c`.
     pub(super) fn point(&self, c: usize) -> Point {
         self.mesh.points()[self.mesh.corners()[c] as usize]
+    }
+
+    /// End points of half-edge `h`.
+    pub(super) fn segment(&self, h: usize) -> [Point; 2] {
+        [self.point(h), self.point(self.topology.next[h] as usize)]
     }
 }
 

@@ -1,6 +1,6 @@
 //! The numbers one looks at first, under short names.
 
-use super::{Degenerate, Quality, TopologyMetrics};
+use super::{Degenerate, Quality, ReferenceMetrics, TopologyMetrics};
 use serde::Serialize;
 
 /// A digest of [`Metrics`](super::Metrics).
@@ -78,7 +78,11 @@ pub struct DegenerateSummary {
 }
 
 impl Summary {
-    pub(super) fn new(topology: &TopologyMetrics, quality: &Quality) -> Self {
+    pub(super) fn new(
+        topology: &TopologyMetrics,
+        quality: &Quality,
+        reference: Option<&ReferenceMetrics>,
+    ) -> Self {
         let connectivity = &topology.connectivity;
         let irregular = &topology.irregularity.irregular;
         Self {
@@ -109,9 +113,9 @@ impl Summary {
             angle_dev_mean: quality.angles.angle_dev_from_90_quads_deg.mean,
             fig10_mean: quality.angles.fig10_face_angle_deviation_deg.mean,
             edge_cv: quality.edge_length.cv,
-            hausdorff: None,
-            rms: None,
-            flipped_faces: None,
+            hausdorff: reference.map(|r| r.hausdorff),
+            rms: reference.map(|r| r.rms),
+            flipped_faces: reference.map(|r| r.orientation.flipped_faces),
         }
     }
 }

@@ -13,7 +13,7 @@ fn mesh((points, faces): Soup) -> PolyMesh {
 }
 
 fn metrics(soup: Soup) -> Metrics {
-    measure(&mesh(soup)).expect("a fixture has faces")
+    measure(&mesh(soup), None).expect("a fixture has faces")
 }
 
 fn cube() -> Soup {
@@ -263,5 +263,66 @@ fn faces_without_corners_or_area_do_no_harm() {
     let points = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]];
     let m = metrics((points, vec![vec![], vec![0], vec![0, 1], vec![0, 1, 2], vec![0, 0, 0, 0]]));
     assert_eq!((m.topology.degenerate.faces_degree_lt3, m.quality.zero_area_faces), (3, 5));
-    assert_eq!(measure(&mesh((vec![], vec![]))), Err(MetricsError::NoFaces));
+    assert_eq!(measure(&mesh((vec![], vec![])), None), Err(MetricsError::NoFaces));
+}
+
+fn against_cube(soup: Soup) -> ReferenceMetrics {
+    let target =
+        Target::new(&mesh(cube()), &MeasureOptions { samples: 2000, ..Default::default() });
+    let metrics = measure(&mesh(soup), Some(&target.expect("a cube is a surface")));
+    metrics.expect("a fixture has faces").reference.expect("there is a reference")
+}
+
+#[test]
+fn a_cube_is_itself() {
+    let r = against_cube(cube());
+    assert!(r.hausdorff < 1e-12 && r.rms < 1e-12);
+    assert_eq!((r.orientation.flipped_faces, r.features.reference_edges), (0, 12));
+    assert!(r.features.to_sharp_mesh_edge.is_some_and(|d| d.max < 1e-12));
+    assert_eq!(r.boundary, Boundary::Counts { mesh_boundary_edges: 0, ref_boundary_edges: 0 });
+}
+
+#[test]
+fn a_shifted_cube_is_as_far_as_the_shift() {
+    let (points, faces) = cube();
+    let r = against_cube((points.iter().map(|p| [p[0] + 0.1, p[1], p[2]]).collect(), faces));
+    assert!((r.hausdorff * 3.0_f64.sqrt() - 0.1).abs() < 1e-9);
+}
+
+#[test]
+fn an_inverted_cube_is_all_flipped() {
+    let (points, mut faces) = cube();
+    for face in &mut faces {
+        face.reverse();
+    }
+    let orientation = against_cube((points, faces)).orientation;
+    assert_eq!((orientation.flipped_faces, orientation.flipped_share), (6, 1.0));
+    assert_eq!(orientation.normal_deviation_deg.mean, Some(180.0));
+}
+
+#[test]
+fn boundaries_are_compared_along_their_length() {
+    let options = MeasureOptions { samples: 2000, ..Default::default() };
+    let target = Target::new(&mesh(open_grid(4, 4)), &options).expect("a grid is a surface");
+    let (points, faces) = open_grid(4, 4);
+    let raised = points.iter().map(|p| [p[0], p[1], 0.5]).collect();
+    let m = measure(&mesh((raised, faces)), Some(&target)).expect("a grid has faces");
+    let Some(Boundary::Distances { ref_to_mesh_max, mesh_to_ref_mean, .. }) =
+        m.reference.map(|r| r.boundary)
+    else {
+        panic!("both have a boundary")
+    };
+    for d in [ref_to_mesh_max, mesh_to_ref_mean] {
+        assert!((d * 32.0_f64.sqrt() - 0.5).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn what_has_no_area_is_no_surface() {
+    let flat = mesh((vec![[0.0; 3]; 3], vec![vec![0, 1, 2]]));
+    let options = MeasureOptions::default();
+    assert!(matches!(Target::new(&flat, &options), Err(MetricsError::Reference(_))));
+    let target = Target::new(&mesh(cube()), &MeasureOptions { samples: 1000, ..options });
+    let refused = measure(&flat, Some(&target.expect("a cube is a surface")));
+    assert!(matches!(refused, Err(MetricsError::Mesh(_))));
 }
