@@ -54,7 +54,7 @@ impl Checker {
         let mut python = Command::new("python3");
         python.arg(&self.script).arg(mesh).arg("--json");
         if let Some(reference) = reference {
-            python.arg("--ref").arg(reference);
+            python.arg("--ref").arg(reference).args(["--samples", &SAMPLES.to_string()]);
         }
         let output = python.output().expect("python3 runs");
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -123,13 +123,13 @@ fn same_leaf(ours: &Value, theirs: &Value) -> bool {
     }
     let integral = ours.is_i64() || theirs.is_i64();
     match (ours.as_f64(), theirs.as_f64()) {
-        (Some(a), Some(b)) if !integral => near(a, b, RELATIVE),
+        (Some(a), Some(b)) if !integral => near(a, b, RELATIVE, ABSOLUTE),
         _ => false,
     }
 }
 
-fn near(a: f64, b: f64, relative: f64) -> bool {
-    (a - b).abs() <= ABSOLUTE.max(relative * b.abs())
+fn near(a: f64, b: f64, relative: f64, absolute: f64) -> bool {
+    (a - b).abs() <= absolute.max(relative * b.abs())
 }
 
 #[test]
@@ -151,16 +151,22 @@ fn counts_and_qualities_agree_with_the_checker() {
     assert!(faults.is_empty(), "{} differences:\n{}", faults.len(), faults.join("\n"));
 }
 
+/// Samples for distances, on both sides: with 200 000 of them the checker's own Hausdorff
+/// distance still varies by 10 % from seed to seed, on wingnut.
+const SAMPLES: u32 = 1_000_000;
+
 /// How far a number may be from one that the checker finds with random samples or, for curves,
-/// with a search among near pieces. `None`: it is not compared.
-fn tolerance(key: &str) -> Option<f64> {
+/// with a search among near pieces: relative, and absolute in diagonals. `None`: not compared.
+fn tolerance(key: &str) -> Option<(f64, f64)> {
     match key {
         "distance_backend" => None,
-        "hausdorff" => Some(0.05),
-        "flipped_faces" | "flipped_share" => Some(0.1),
-        "rms" | "mean" | "ref_to_mesh_mean" | "mesh_to_ref_mean" | "max" | "p95" => Some(0.02),
-        "mean_in_edge_lengths" | "share_within_0_1_edge" => Some(0.02),
-        _ => Some(RELATIVE),
+        "hausdorff" => Some((0.05, 3e-5)),
+        // On a planar mesh all error is in a few samples near its holes.
+        "rms" | "mean" => Some((0.02, 3e-7)),
+        "flipped_faces" | "flipped_share" => Some((0.1, 0.0)),
+        "ref_to_mesh_mean" | "mesh_to_ref_mean" | "max" | "p95" => Some((0.02, ABSOLUTE)),
+        "mean_in_edge_lengths" | "share_within_0_1_edge" => Some((0.02, ABSOLUTE)),
+        _ => Some((RELATIVE, ABSOLUTE)),
     }
 }
 
@@ -171,9 +177,9 @@ fn compare_reference(at: &str, ours: &Value, theirs: &Value, faults: &mut Vec<St
     assert!(a.keys().eq(b.keys()) || a.len() == b.len(), "{at}: {a:?} here, {b:?} there");
     for (key, x) in a {
         let (at, y) = (format!("{at}.{key}"), &b[key]);
-        let Some(tolerance) = tolerance(key) else { continue };
+        let Some((relative, absolute)) = tolerance(key) else { continue };
         match (x.as_f64(), y.as_f64()) {
-            (Some(x), Some(y)) if near(x, y, tolerance) => {}
+            (Some(x), Some(y)) if near(x, y, relative, absolute) => {}
             (Some(x), Some(y)) => faults.push(format!("{at}: {x} here, {y} there")),
             _ if x == y => {}
             _ => compare_reference(&at, x, y, faults),
@@ -189,6 +195,7 @@ fn distances_agree_with_the_checker() {
         Err(why) => return skip(&why),
     };
     let mut faults = Vec::new();
+    let options = MeasureOptions { samples: SAMPLES, ..Default::default() };
     for name in [
         "spot_im3k",
         "blub_im6k",
@@ -199,7 +206,7 @@ fn distances_agree_with_the_checker() {
     ] {
         let (path, reference) = (checker.path(name, ".obj"), checker.path(name, ".ref.obj"));
         let theirs = checker.measure(&path, Some(&reference));
-        let target = Target::new(&read(&reference), &MeasureOptions::default());
+        let target = Target::new(&read(&reference), &options);
         let target = target.expect("the reference is a surface");
         let ours = metrics::measure(&read(&path), Some(&target)).expect("the mesh has faces");
         let ours = serde_json::to_value(ours).expect("metrics are JSON");
