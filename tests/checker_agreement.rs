@@ -3,7 +3,10 @@
 //!
 //! Where the data, Python, numpy or scipy are missing the test says so and passes.
 
-use quadmend::mesh::{Point, PolyMesh};
+mod common;
+
+use common::{MESHES, data_folder, say};
+use quadmend::mesh::PolyMesh;
 use quadmend::metrics::{self, MeasureOptions, Target};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -20,30 +23,19 @@ struct Checker {
 }
 
 impl Checker {
-    /// The checker, or why there is none.
-    fn find() -> Result<Self, String> {
-        let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
-        let data = std::env::var_os("QUADMEND_DATA").map_or_else(beside, PathBuf::from);
+    /// The checker with the Python modules that it needs; says what is missing.
+    fn find(test: &str, modules: &[&str]) -> Option<Self> {
+        let data = data_folder(test)?;
         let script = data.join("../tools/measure.py");
         if !script.is_file() {
-            return Err(format!("no {}", script.display()));
+            say(&format!("SKIPPED: {test}: no checker at {}", script.display()));
+            return None;
         }
-        if !python_has(&["numpy", "scipy"]) {
-            return Err("no python3 with numpy and scipy".into());
+        if !python_has(modules) {
+            say(&format!("SKIPPED: {test}: no python3 with {}", modules.join(", ")));
+            return None;
         }
-        Ok(Self { data, script })
-    }
-
-    /// All meshes of the data that have a reference, by name.
-    fn names(&self) -> Vec<String> {
-        let Ok(entries) = std::fs::read_dir(&self.data) else { return Vec::new() };
-        let name = |entry: std::io::Result<std::fs::DirEntry>| {
-            let file = entry.ok()?.file_name().into_string().ok()?;
-            Some(file.strip_suffix(".ref.obj")?.to_owned())
-        };
-        let mut names: Vec<String> = entries.filter_map(name).collect();
-        names.sort();
-        names
+        Some(Self { data, script })
     }
 
     fn path(&self, name: &str, kind: &str) -> PathBuf {
@@ -68,29 +60,8 @@ fn python_has(modules: &[&str]) -> bool {
     output.is_ok_and(|o| o.status.success())
 }
 
-#[allow(clippy::print_stderr)]
-fn skip(why: &str) {
-    eprintln!("SKIPPED: metrics are not compared with the checker: {why}");
-}
-
 fn read(path: &Path) -> PolyMesh {
-    let text = std::fs::read_to_string(path).expect("the mesh can be read");
-    let (mut points, mut faces) = (Vec::new(), Vec::new());
-    for line in text.lines() {
-        let mut words = line.split_whitespace();
-        match words.next() {
-            Some("v") => {
-                let x: Vec<f64> = words.take(3).map(|w| w.parse().expect("a number")).collect();
-                points.push(Point::new(x[0], x[1], x[2]));
-            }
-            Some("f") => {
-                let index = |w: &str| w.split('/').next().and_then(|i| i.parse::<u32>().ok());
-                faces.push(words.map(|w| index(w).expect("an index") - 1).collect::<Vec<_>>());
-            }
-            _ => {}
-        }
-    }
-    PolyMesh::new(points, faces).expect("the mesh is well formed")
+    quadmend::io::read(path).expect("the mesh can be read").mesh
 }
 
 /// Appends to `faults` where `ours` differs from `theirs`.
@@ -132,21 +103,22 @@ fn near(a: f64, b: f64, relative: f64, absolute: f64) -> bool {
     (a - b).abs() <= absolute.max(relative * b.abs())
 }
 
+fn compare_without_reference(checker: &Checker, name: &str, path: &Path, faults: &mut Vec<String>) {
+    let theirs = checker.measure(path, None);
+    let ours = metrics::measure(&read(path), None).expect("the mesh has faces");
+    let ours = serde_json::to_value(ours).expect("metrics are JSON");
+    for part in ["topology", "quality", "summary"] {
+        compare(&format!("{name}.{part}"), &ours[part], &theirs[part], faults);
+    }
+}
+
 #[test]
 fn counts_and_qualities_agree_with_the_checker() {
-    let checker = match Checker::find() {
-        Ok(checker) => checker,
-        Err(why) => return skip(&why),
-    };
+    let test = "counts_and_qualities_agree_with_the_checker";
+    let Some(checker) = Checker::find(test, &["numpy", "scipy"]) else { return };
     let mut faults = Vec::new();
-    for name in checker.names() {
-        let path = checker.path(&name, ".obj");
-        let theirs = checker.measure(&path, None);
-        let ours = metrics::measure(&read(&path), None).expect("the mesh has faces");
-        let ours = serde_json::to_value(ours).expect("metrics are JSON");
-        for part in ["topology", "quality", "summary"] {
-            compare(&format!("{name}.{part}"), &ours[part], &theirs[part], &mut faults);
-        }
+    for name in MESHES {
+        compare_without_reference(&checker, name, &checker.path(name, ".obj"), &mut faults);
     }
     assert!(faults.is_empty(), "{} differences:\n{}", faults.len(), faults.join("\n"));
 }
@@ -164,8 +136,12 @@ fn tolerance(key: &str) -> Option<(f64, f64)> {
         // On a planar mesh all error is in a few samples near its holes.
         "rms" | "mean" => Some((0.02, 3e-7)),
         "flipped_faces" | "flipped_share" => Some((0.1, 0.0)),
-        "ref_to_mesh_mean" | "mesh_to_ref_mean" | "max" | "p95" => Some((0.02, ABSOLUTE)),
-        "mean_in_edge_lengths" | "share_within_0_1_edge" => Some((0.02, ABSOLUTE)),
+        "ref_to_mesh_mean"
+        | "mesh_to_ref_mean"
+        | "max"
+        | "p95"
+        | "mean_in_edge_lengths"
+        | "share_within_0_1_edge" => Some((0.02, ABSOLUTE)),
         _ => Some((RELATIVE, ABSOLUTE)),
     }
 }
@@ -189,11 +165,8 @@ fn compare_reference(at: &str, ours: &Value, theirs: &Value, faults: &mut Vec<St
 
 #[test]
 fn distances_agree_with_the_checker() {
-    let checker = match Checker::find() {
-        Ok(checker) if python_has(&["igl"]) => checker,
-        Ok(_) => return skip("distances need libigl"),
-        Err(why) => return skip(&why),
-    };
+    let test = "distances_agree_with_the_checker";
+    let Some(checker) = Checker::find(test, &["numpy", "scipy", "igl"]) else { return };
     let mut faults = Vec::new();
     let options = MeasureOptions { samples: SAMPLES, ..Default::default() };
     for name in [
@@ -211,6 +184,39 @@ fn distances_agree_with_the_checker() {
         let ours = metrics::measure(&read(&path), Some(&target)).expect("the mesh has faces");
         let ours = serde_json::to_value(ours).expect("metrics are JSON");
         compare_reference(name, &ours["reference"], &theirs["reference"], &mut faults);
+    }
+    assert!(faults.is_empty(), "{} differences:\n{}", faults.len(), faults.join("\n"));
+}
+
+/// A soup on few vertices: all sorts of edges with many faces, repeated corners, bow-ties,
+/// T-junctions. The generator is Knuth's, so that the soup is the same everywhere.
+fn soup(seed: u64, vertices: u64, faces: usize) -> String {
+    let mut state = seed;
+    let mut below = |n: u64| {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) % n
+    };
+    let mut lines: Vec<String> = Vec::new();
+    for _ in 0..vertices {
+        lines.push(format!("v {} {} {}", below(97), below(97), below(97)));
+    }
+    for _ in 0..faces {
+        let corners = (0..3 + below(4)).map(|_| (1 + below(vertices)).to_string());
+        lines.push(format!("f {}", corners.collect::<Vec<_>>().join(" ")));
+    }
+    lines.join("\n")
+}
+
+#[test]
+fn soups_agree_with_the_checker() {
+    let test = "soups_agree_with_the_checker";
+    let Some(checker) = Checker::find(test, &["numpy", "scipy"]) else { return };
+    let mut faults = Vec::new();
+    for (seed, vertices, faces) in [(1, 6, 8), (2, 12, 9), (3, 40, 60), (4, 200, 90), (5, 9, 200)] {
+        let file = tempfile::Builder::new().suffix(".obj").tempfile().expect("a temporary file");
+        std::fs::write(file.path(), soup(seed, vertices, faces)).expect("the soup is written");
+        compare_without_reference(&checker, &format!("soup {seed}"), file.path(), &mut faults);
     }
     assert!(faults.is_empty(), "{} differences:\n{}", faults.len(), faults.join("\n"));
 }

@@ -2,7 +2,8 @@
 //!
 //! Every measure works on any soup of polygons: it is cut at its non-manifold places (see
 //! [`Topology`]) and degenerate faces are counted instead of refused. One file is one concept;
-//! [`Metrics`] puts them together in the order in which they are written as JSON.
+//! [`Metrics`] puts them together in the order in which they are written as JSON, and [`METRICS`]
+//! names the single numbers that tables, limits and comparisons speak of.
 
 mod angles;
 mod components;
@@ -15,11 +16,13 @@ mod gauss_bonnet;
 mod irregularity;
 mod jacobian;
 mod planarity;
+mod registry;
 mod segments;
 mod shape;
 mod stats;
 mod summary;
 mod t_junctions;
+mod table;
 #[cfg(test)]
 mod tests;
 
@@ -33,9 +36,11 @@ pub use edges::EdgeLength;
 pub use gauss_bonnet::{GaussBonnet, LowerBounds};
 pub use irregularity::{Histogram, Irregular, Irregularity, irregular_elements};
 pub use jacobian::ScaledJacobian;
+pub use registry::{Better, Kind, METRICS, Metric, metric};
 pub use stats::Spread;
 pub use summary::{DegenerateSummary, Summary};
 pub use t_junctions::{TJunctions, matched_t_junctions};
+pub use table::table;
 
 use crate::knobs::knobs;
 use crate::mesh::{PolyMesh, Topology};

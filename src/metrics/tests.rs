@@ -326,3 +326,41 @@ fn what_has_no_area_is_no_surface() {
     let refused = measure(&flat, Some(&target.expect("a cube is a surface")));
     assert!(matches!(refused, Err(MetricsError::Mesh(_))));
 }
+
+#[test]
+fn metrics_have_unique_keys_and_groups_in_one_piece() {
+    let mut keys: Vec<&str> = METRICS.iter().map(|m| m.key).collect();
+    keys.sort_unstable();
+    assert!(keys.windows(2).all(|w| w[0] != w[1]));
+    let mut groups: Vec<&str> = METRICS.iter().map(|m| m.group).collect();
+    groups.dedup();
+    let runs = groups.len();
+    groups.sort_unstable();
+    groups.dedup();
+    assert_eq!(runs, groups.len());
+}
+
+#[test]
+fn keys_of_the_summary_mean_the_same_in_the_registry() {
+    let m = metrics(t_junction_grid());
+    let json = serde_json::to_value(&m.summary).expect("metrics are JSON");
+    for metric in METRICS {
+        let Some(in_json) = json.get(metric.key).filter(|v| !v.is_object()) else { continue };
+        let value = in_json.as_f64().or(in_json.as_bool().map(|b| f64::from(u8::from(b))));
+        assert_eq!((metric.value)(&m), value, "{}", metric.key);
+    }
+}
+
+#[test]
+fn the_table_lines_up_and_leaves_out_what_is_not_there() {
+    let (before, after) = (metrics(t_junction_grid()), metrics(open_grid(5, 5)));
+    let text = table(&[("before", &before), ("after", &after)]);
+    assert!(text.contains("T-junctions") && text.contains("↓ 100.0 %  better"), "{text}");
+    assert!(!text.contains("Hausdorff") && !text.contains("doublets"), "{text}");
+    let lines: Vec<&str> =
+        text.lines().filter(|l| l.contains("change") || l.contains('%')).collect();
+    assert!(lines.len() > 3 && text.lines().all(|l| l == l.trim_end()), "{text}");
+    assert!(
+        table(&[("cube", &metrics(cube()))]).lines().next().is_some_and(|l| l.ends_with("cube"))
+    );
+}
