@@ -11,5 +11,6 @@ pub mod io;
 pub mod knobs;
 pub mod mesh;
 pub mod metrics;
+pub mod smooth;
 pub mod surface;
 pub mod watch;
