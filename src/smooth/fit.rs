@@ -35,37 +35,43 @@ impl Shape {
 }
 
 /// The nearest rectangle to four arms from a common centre, as arms from that centre. O(1).
+pub(super) fn rectangle(arms: &[Vector; 4], normal: &Vector, shape: &Shape) -> [Vector; 4] {
+    let (u, v) = half_diagonals(arms, normal, shape);
+    [-u, -v, u, v]
+}
+
+/// The last two arms of that rectangle; the other two are opposite.
 ///
 /// The diagonals are made equally long; each is turned by half of what the angle between them
 /// lacks. They are turned in their own plane if that faces like `normal`, otherwise in the plane
 /// of `normal`, where a quad that is turned over has a negative angle.
 #[inline]
-pub(super) fn rectangle(arms: &[Vector; 4], normal: &Vector, shape: &Shape) -> [Vector; 4] {
+pub(super) fn half_diagonals(
+    arms: &[Vector; 4],
+    normal: &Vector,
+    shape: &Shape,
+) -> (Vector, Vector) {
     let (d1, d2) = (arms[2] - arms[0], arms[3] - arms[1]);
     let (l1, l2) = (d1.norm(), d2.norm());
     let length = (l1 + l2) * 0.25;
     if d1.cross(&d2).dot(normal) > 0.0 && l1 * l2 > 0.0 {
-        let (u, v) = (d1 / l1, d2 / l2);
-        let cos = u.dot(&v);
+        let (own1, own2) = (length / l1, length / l2);
+        let cos = d1.dot(&d2) / (l1 * l2);
         if cos.abs() <= shape.sin_slant {
-            let (u, v) = (u * length, v * length);
-            return [-u, -v, u, v];
+            return (d1 * own1, d2 * own2);
         }
         if 1.0 - cos * cos > 1e-12 {
-            let (u, v) = opened(&u, &v, cos, shape);
-            let (u, v) = (u * length, v * length);
-            return [-u, -v, u, v];
+            return opened(&(d1 * own1), &(d2 * own2), cos, shape);
         }
     }
     let (u, v) = turned(&d1, &d2, &unit(normal), shape);
-    let (u, v) = (u * length, v * length);
-    [-u, -v, u, v]
+    (u * length, v * length)
 }
 
-/// Unit directions at an angle with this cosine after turning them, in their plane, to the
+/// Equally long vectors at an angle with this cosine after turning them, in their plane, to the
 /// nearest fair angle.
 ///
-/// With b and p the unit vectors along u + v and v − u, directions at the angle a are
+/// With b and p that long along u + v and v − u, such vectors at the angle a are
 /// b cos(a/2) ∓ p sin(a/2).
 fn opened(u: &Vector, v: &Vector, cos: f64, shape: &Shape) -> (Vector, Vector) {
     let [c, s] = if cos > 0.0 { shape.half_least } else { shape.half_most };

@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 
 use super::RelaxOptions;
-use super::fit::{Shape, polygon, rectangle};
+use super::fit::{Shape, half_diagonals, polygon};
 use crate::mesh::{Point, Vector};
 use crate::surface::Reference;
 
@@ -15,7 +15,7 @@ use crate::surface::Reference;
 const CHUNK: usize = 256;
 /// Vertices that have moved less than this share of an edge since they were last projected are
 /// not projected again before the end.
-const DRIFT: f64 = 0.01;
+const DRIFT: f64 = 0.03;
 
 /// A vertex and what is known of it.
 #[derive(Debug, Clone, Copy)]
@@ -230,15 +230,37 @@ impl Kernel {
     /// Writes the targets of one face; its energy.
     fn aim_face(&self, setting: &Setting, face: &[u32], targets: &mut [Target]) -> f64 {
         let normal: Vector = face.iter().map(|&v| self.vertices[v as usize].normal).sum();
-        if let &[a, b, c, d] = face {
-            let points = [a, b, c, d].map(|v| self.lead[v as usize].coords);
-            let centre = (points[0] + points[1] + points[2] + points[3]) * 0.25;
-            let arms = points.map(|p| p - centre);
-            let fitted = rectangle(&arms, &normal, &setting.shape);
-            self.weigh(setting, &centre, (&arms, &fitted), targets)
-        } else {
-            self.aim_polygon(setting, face, &normal, targets)
+        match (<&[u32; 4]>::try_from(face), <&mut [Target; 4]>::try_from(&mut *targets)) {
+            (Ok(quad), Ok(targets)) => self.aim_quad(setting, quad, &normal, targets),
+            _ => self.aim_polygon(setting, face, &normal, targets),
         }
+    }
+
+    #[inline]
+    fn aim_quad(
+        &self,
+        setting: &Setting,
+        quad: &[u32; 4],
+        normal: &Vector,
+        targets: &mut [Target; 4],
+    ) -> f64 {
+        let points = quad.map(|v| self.lead[v as usize].coords);
+        let centre = (points[0] + points[1] + points[2] + points[3]) * 0.25;
+        let arms = points.map(|p| p - centre);
+        let (u, v) = half_diagonals(&arms, normal, &setting.shape);
+        let size = arms[0].norm_squared()
+            + arms[1].norm_squared()
+            + arms[2].norm_squared()
+            + arms[3].norm_squared();
+        let error = (arms[0] + u).norm_squared()
+            + (arms[1] + v).norm_squared()
+            + (arms[2] - u).norm_squared()
+            + (arms[3] - v).norm_squared();
+        let (weight, scale) = self.weigh(setting, size * 0.25, error * 0.25);
+        let (centre, u, v) = (centre * weight, u * (scale * weight), v * (scale * weight));
+        *targets = [centre - u, centre - v, centre + u, centre + v]
+            .map(|place| Target { sum: place.into(), weight });
+        error * weight
     }
 
     fn aim_polygon(
@@ -258,35 +280,25 @@ impl Kernel {
             !self.vertices[v].held && self.star(v).len() == 3
         };
         polygon(&mut arms, may_hang, normal, &setting.shape);
-        self.weigh(setting, &centre, (&old, &arms), targets)
-    }
-
-    /// Turns fitted corners into weighted targets; the energy of the face.
-    // Inlined, so that the loops of quads have a known length.
-    #[inline]
-    fn weigh(
-        &self,
-        setting: &Setting,
-        centre: &Vector,
-        (arms, fitted): (&[Vector], &[Vector]),
-        targets: &mut [Target],
-    ) -> f64 {
-        let (mut size, mut error) = (0.0, 0.0);
-        for (a, t) in arms.iter().zip(fitted) {
-            size += a.norm_squared();
-            error += (a - t).norm_squared();
-        }
-        // A face that has shrunk to a point is all error; it weighs like one of a tenth the size.
-        let share = 1.0 / arms.len().max(1) as f64;
-        let r2 = (size * share).max(self.mean_size * 1e-2 * 1e-2);
-        let strain = error * share / r2;
-        let weight = (1.0 + setting.stress * strain.min(4.0)) / r2;
-        let scale = (1.0 - 0.5 * setting.even * rough_ln(r2 / self.mean_size)).clamp(0.9, 1.1);
-        for (t, out) in fitted.iter().zip(targets) {
-            let place = (centre + t * scale) * weight;
-            *out = Target { sum: place.into(), weight };
+        let share = 1.0 / face.len().max(1) as f64;
+        let size: f64 = old.iter().map(Vector::norm_squared).sum();
+        let error: f64 = old.iter().zip(&arms).map(|(a, t)| (a - t).norm_squared()).sum();
+        let (weight, scale) = self.weigh(setting, size * share, error * share);
+        for (t, out) in arms.iter().zip(targets) {
+            *out = Target { sum: ((centre + t * scale) * weight).into(), weight };
         }
         error * weight
+    }
+
+    /// The weight of a face and what its fit is scaled by, from the mean squares of its arms and
+    /// of what they miss.
+    #[inline]
+    fn weigh(&self, setting: &Setting, size: f64, error: f64) -> (f64, f64) {
+        // A face that has shrunk to a point is all error; it weighs like one of a tenth the size.
+        let r2 = size.max(self.mean_size * 1e-2 * 1e-2);
+        let weight = (1.0 + setting.stress * (error / r2).min(4.0)) / r2;
+        let pull = 0.5 * setting.even * rough_ln(r2 / self.mean_size);
+        (weight, (1.0 - pull).clamp(0.9, 1.1))
     }
 
     /// Moves every free vertex; sets the motion and where the next iteration leads.
@@ -411,7 +423,8 @@ impl Kernel {
     }
 
     /// Gives every vertex its normal and triangle of the reference without moving it. The mean
-    /// normal of its faces says on which side of a thin sheet it is.
+    /// normal of its faces says on which side of a thin sheet it is, unless it lies on the
+    /// triangle that it came with.
     pub(super) fn find_normals(&mut self, reference: &Reference, setting: &Setting) {
         let mut vertices = std::mem::take(&mut self.vertices);
         let own = |v: usize| -> Vector {
@@ -420,9 +433,11 @@ impl Kernel {
         };
         let reach = (2.0 * self.mean_size).sqrt();
         let find = |(v, vertex): (usize, &mut Vertex)| {
-            let hit = reference.closest_facing(&vertex.point, &own(v), vertex.last, reach);
-            vertex.last = hit.triangle;
-            vertex.normal = reference.normal(hit.triangle) * setting.sign;
+            if !reference.is_on(&vertex.point, vertex.last, DRIFT * reach) {
+                let hit = reference.closest_facing(&vertex.point, &own(v), vertex.last, reach);
+                vertex.last = hit.triangle;
+            }
+            vertex.normal = reference.normal(vertex.last) * setting.sign;
         };
         if setting.parallel {
             vertices.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(find);

@@ -2,7 +2,7 @@
 
 use super::RelaxOptions;
 use super::kernel::{Kernel, Setting, Vertex};
-use crate::mesh::{Point, PolyMesh, Vector};
+use crate::mesh::{NONE, Point, PolyMesh, Vector};
 use crate::surface::Reference;
 
 /// How the faces of a mesh are oriented against those of its reference.
@@ -67,14 +67,14 @@ impl Region {
     }
 
     /// Adds a vertex that may move unless it is `held`; its number in the region. `near` is a
-    /// triangle of the reference close by, if known (it only saves time).
+    /// triangle of the reference close by, if known; one that the vertex lies on is believed.
     pub fn add_vertex(&mut self, point: Point, held: bool, near: Option<u32>) -> u32 {
         let far = Point::from(Vector::repeat(f64::INFINITY));
         self.kernel.vertices.push(Vertex {
             point,
             based: far,
             normal: Vector::zeros(),
-            last: near.unwrap_or(0),
+            last: near.unwrap_or(NONE),
             held,
         });
         self.kernel.vertices.len() as u32 - 1

@@ -181,6 +181,12 @@ impl Reference {
         self.tree.search(query, Best::within(radius), |_| true).hit().is_some()
     }
 
+    /// Whether a point is at most `tolerance` away from triangle `t`; false if there is none such.
+    #[must_use]
+    pub fn is_on(&self, query: &Point, t: u32, tolerance: f64) -> bool {
+        (t as usize) < self.triangles.len() && self.tree.at(t, query).0 <= tolerance * tolerance
+    }
+
     /// The closest points of many queries, in their order; neighbours should be near each other.
     /// Parallel; independent of the number of threads.
     #[must_use]
