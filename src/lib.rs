@@ -9,6 +9,7 @@
 pub mod io;
 pub mod knobs;
 pub mod mesh;
+pub mod metrics;
 pub mod moves;
 pub mod ops;
 pub mod patch;

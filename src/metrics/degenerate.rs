@@ -1,0 +1,87 @@
+//! Connectivity that no clean mesh has: faces that repeat a vertex or another face, faces glued
+//! to themselves or twice to a neighbour, vertices of valence 1 and 2.
+
+use super::components::partner_pairs;
+use crate::mesh::{PolyMesh, Topology};
+use serde::Serialize;
+
+/// Counts of degenerate elements.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Degenerate {
+    /// Faces that visit a vertex twice.
+    pub faces_repeated_vertex: usize,
+    /// Faces with the vertices of an earlier one.
+    pub duplicate_faces: usize,
+    /// Faces with fewer than three corners.
+    pub faces_degree_lt3: usize,
+    /// Edges with the same face on both sides.
+    pub faces_glued_to_self: usize,
+    /// Pairs of faces that share two or more edges.
+    pub face_pairs_sharing_2plus_edges: usize,
+    /// Interior vertices of valence 2.
+    pub doublets_valence2_interior: usize,
+    /// Interior vertices of valence 1.
+    pub valence1_interior: usize,
+}
+
+impl Degenerate {
+    /// Counts. O(n log n) for n corners.
+    pub(super) fn new(mesh: &PolyMesh, topology: &Topology) -> Self {
+        let sorted = sorted_faces(mesh);
+        let row =
+            |f: u32| &sorted[mesh.offsets()[f as usize] as usize..][..mesh.face(f as usize).len()];
+        let faces = 0..mesh.face_count() as u32;
+        let repeats = |f: &u32| row(*f).windows(2).any(|w| w[0] == w[1]);
+        let mut order: Vec<u32> = faces.clone().collect();
+        order.sort_unstable_by(|&a, &b| row(a).cmp(row(b)));
+        let (glued, twice) = shared_edges(topology);
+        Self {
+            faces_repeated_vertex: faces.filter(repeats).count(),
+            duplicate_faces: order.windows(2).filter(|w| row(w[0]) == row(w[1])).count(),
+            faces_degree_lt3: mesh.faces().filter(|face| face.len() < 3).count(),
+            faces_glued_to_self: glued,
+            face_pairs_sharing_2plus_edges: twice,
+            doublets_valence2_interior: interior_of_valence(topology, 2),
+            valence1_interior: interior_of_valence(topology, 1),
+        }
+    }
+
+    /// Whether there is nothing of the kind.
+    #[must_use]
+    pub fn is_clean(&self) -> bool {
+        self.faces_repeated_vertex == 0
+            && self.duplicate_faces == 0
+            && self.faces_degree_lt3 == 0
+            && self.faces_glued_to_self == 0
+            && self.face_pairs_sharing_2plus_edges == 0
+            && self.doublets_valence2_interior == 0
+            && self.valence1_interior == 0
+    }
+}
+
+/// The corners of each face in ascending order.
+fn sorted_faces(mesh: &PolyMesh) -> Vec<u32> {
+    let mut corners = mesh.corners().to_vec();
+    for ends in mesh.offsets().windows(2) {
+        corners[ends[0] as usize..ends[1] as usize].sort_unstable();
+    }
+    corners
+}
+
+/// Edges between a face and itself, and pairs of faces with several common edges.
+fn shared_edges(topology: &Topology) -> (usize, usize) {
+    let pair = |(h, t): (usize, usize)| {
+        let (f, g) = (topology.face[h], topology.face[t]);
+        (f.min(g), f.max(g))
+    };
+    let mut pairs: Vec<(u32, u32)> = partner_pairs(topology).map(pair).collect();
+    pairs.sort_unstable();
+    let glued = pairs.iter().filter(|(f, g)| f == g).count();
+    pairs.retain(|(f, g)| f != g);
+    (glued, pairs.chunk_by(|a, b| a == b).filter(|same| same.len() > 1).count())
+}
+
+fn interior_of_valence(topology: &Topology, valence: u32) -> usize {
+    let fans = topology.fan_corners.iter().zip(&topology.fan_on_boundary);
+    fans.filter(|&(&n, &boundary)| !boundary && n == valence).count()
+}

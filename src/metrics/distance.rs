@@ -1,0 +1,179 @@
+//! How far a mesh is from its reference surface, both ways, and which faces look the wrong way.
+//!
+//! Hausdorff distances are taken over dense samples of both surfaces and over their vertices
+//! (and face centres of the mesh), RMS and mean over the samples only. Samples are spread evenly
+//! by area and are not random. All lengths are relative to the bounding-box diagonal of the
+//! reference.
+
+use super::curves::{Boundary, Features, Lines};
+use super::shape::Shape;
+use super::stats::{Spread, share};
+use super::{MeasureOptions, MetricsError, connectivity};
+use crate::mesh::{Point, PolyMesh, Topology};
+use crate::surface::{Hit, Reference};
+use serde::Serialize;
+
+/// A reference surface made ready to measure meshes against.
+#[derive(Debug)]
+pub struct Target {
+    options: MeasureOptions,
+    surface: Reference,
+    /// Samples first, then the used vertices.
+    probes: Vec<Point>,
+    sample_count: usize,
+    lines: Lines,
+}
+
+impl Target {
+    /// Prepares `mesh` as the reference. O(n log n) for n corners.
+    pub fn new(mesh: &PolyMesh, options: &MeasureOptions) -> Result<Self, MetricsError> {
+        let surface = Reference::plain(mesh).map_err(MetricsError::Reference)?;
+        let mut probes = surface.samples(options.samples as usize);
+        let sample_count = probes.len();
+        probes.extend(used_points(mesh));
+        let lines = Lines::new(mesh, &Topology::new(mesh), options.feature_angle_deg);
+        Ok(Self { options: options.clone(), surface, probes, sample_count, lines })
+    }
+
+    /// The surface itself.
+    #[must_use]
+    pub fn surface(&self) -> &Reference {
+        &self.surface
+    }
+}
+
+/// Everything that is measured against a reference.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ReferenceMetrics {
+    /// How distances are found.
+    pub distance_backend: &'static str,
+    /// Bounding-box diagonal of the reference, in the units of the input.
+    pub reference_bbox_diagonal: f64,
+    /// From the mesh to the reference.
+    pub mesh_to_ref: MeshToReference,
+    /// From the reference to the mesh.
+    pub ref_to_mesh: OneWay,
+    /// The larger of both Hausdorff distances.
+    pub hausdorff: f64,
+    /// The larger of both root-mean-square distances.
+    pub rms: f64,
+    /// How faces look compared with the nearest part of the reference.
+    #[serde(flatten)]
+    pub orientation: Orientation,
+    /// Sharp edges of the reference.
+    pub features: Features,
+    /// Boundaries of both.
+    pub boundary: Boundary,
+}
+
+/// Distances from one surface to another, relative to the diagonal of the reference.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct OneWay {
+    /// Largest.
+    pub hausdorff: f64,
+    /// Root mean square.
+    pub rms: f64,
+    /// Mean.
+    pub mean: f64,
+}
+
+/// Distances from the mesh to the reference.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct MeshToReference {
+    /// Over the surface.
+    #[serde(flatten)]
+    pub surface: OneWay,
+    /// Largest over the vertices alone.
+    pub vertices_max: f64,
+}
+
+/// Normals of faces against those of the nearest triangle of the reference.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Orientation {
+    /// Faces that look away from it, or nowhere.
+    pub flipped_faces: usize,
+    /// Their share.
+    pub flipped_share: f64,
+    /// Angle between the normals.
+    pub normal_deviation_deg: Spread,
+}
+
+impl ReferenceMetrics {
+    /// Measures. O((samples + n) log n) for n corners of mesh and reference, in parallel.
+    pub(super) fn new(shape: &Shape, target: &Target) -> Result<Self, MetricsError> {
+        let own = Reference::plain(shape.mesh).map_err(MetricsError::Mesh)?;
+        let diagonal = target.surface.diagonal();
+        let (mesh_to_ref, orientation) = from_mesh(shape, &own, target);
+        let back = own.closest_many(&target.probes);
+        let ref_to_mesh = OneWay::new(&back, target.sample_count, diagonal);
+        let angle = target.options.feature_angle_deg;
+        Ok(Self {
+            distance_backend: "exact",
+            reference_bbox_diagonal: diagonal,
+            hausdorff: mesh_to_ref.surface.hausdorff.max(ref_to_mesh.hausdorff),
+            rms: mesh_to_ref.surface.rms.max(ref_to_mesh.rms),
+            mesh_to_ref,
+            ref_to_mesh,
+            orientation,
+            features: Features::new(shape, &target.lines, angle, diagonal),
+            boundary: Boundary::new(shape, &target.lines, diagonal),
+        })
+    }
+}
+
+/// Samples, vertices and face centres of the mesh against the reference.
+fn from_mesh(shape: &Shape, own: &Reference, target: &Target) -> (MeshToReference, Orientation) {
+    let mut probes = own.samples(target.options.samples as usize);
+    let samples = probes.len();
+    probes.extend(used_points(shape.mesh));
+    let vertices = samples..probes.len();
+    probes.extend_from_slice(&shape.centres);
+    let hits = target.surface.closest_many(&probes);
+    let diagonal = target.surface.diagonal();
+    let distances = MeshToReference {
+        surface: OneWay::new(&hits, samples, diagonal),
+        vertices_max: farthest(&hits[vertices.clone()]) / diagonal,
+    };
+    (distances, Orientation::new(shape, &target.surface, &hits[vertices.end..]))
+}
+
+impl OneWay {
+    /// The first `samples` hits are samples; the others count for the maximum only.
+    fn new(hits: &[Hit], samples: usize, diagonal: f64) -> Self {
+        let sampled = &hits[..samples];
+        let count = samples.max(1) as f64;
+        let sum: f64 = sampled.iter().map(|h| h.distance).sum();
+        let squares: f64 = sampled.iter().map(|h| h.distance * h.distance).sum();
+        Self {
+            hausdorff: farthest(hits) / diagonal,
+            rms: (squares / count).sqrt() / diagonal,
+            mean: sum / count / diagonal,
+        }
+    }
+}
+
+impl Orientation {
+    fn new(shape: &Shape, surface: &Reference, at_centres: &[Hit]) -> Self {
+        let alike = |(n, hit): (&crate::mesh::Vector, &Hit)| n.dot(surface.normal(hit.triangle));
+        let cosines: Vec<f64> = shape.normals.iter().zip(at_centres).map(alike).collect();
+        // The normal of a face without area is NaN: such a face looks nowhere and counts as well.
+        let right = cosines.iter().filter(|&&c| c >= 0.0).count();
+        let flipped_faces = cosines.len() - right;
+        let angle = |c: &f64| c.clamp(-1.0, 1.0).acos().to_degrees();
+        Self {
+            flipped_faces,
+            flipped_share: share(flipped_faces, cosines.len()),
+            normal_deviation_deg: Spread::of(cosines.iter().map(angle)),
+        }
+    }
+}
+
+fn farthest(hits: &[Hit]) -> f64 {
+    hits.iter().map(|h| h.distance).fold(0.0, f64::max)
+}
+
+/// Points that faces use, by number.
+fn used_points(mesh: &PolyMesh) -> impl Iterator<Item = Point> + '_ {
+    let used = connectivity::used_vertices(mesh);
+    mesh.points().iter().zip(used).filter_map(|(p, used)| used.then_some(*p))
+}
