@@ -14,6 +14,7 @@ pub mod moves;
 pub mod ops;
 pub mod patch;
 pub mod planner;
+pub mod smooth;
 pub mod sqrtcc;
 pub mod surface;
 pub mod watch;

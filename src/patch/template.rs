@@ -43,6 +43,23 @@ impl Filling {
         self.offsets.push(self.corners.len() as u32);
     }
 
+    /// Number of faces.
+    #[must_use]
+    pub fn face_count(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    /// Σ |4 − valence| over new vertices and Σ |4 − degree| over faces. O(corners).
+    #[must_use]
+    pub fn irregularity(&self) -> u32 {
+        let mut valence = vec![0u32; self.interior as usize];
+        for &v in self.corners.iter().filter(|&&v| v >= self.rim) {
+            valence[(v - self.rim) as usize] += 1;
+        }
+        let vertices: u32 = valence.iter().map(|n| n.abs_diff(4)).sum();
+        vertices + self.faces().map(|f| (f.len() as u32).abs_diff(4)).sum::<u32>()
+    }
+
     /// The faces, each as its vertices.
     pub fn faces(&self) -> impl ExactSizeIterator<Item = &[u32]> + '_ {
         self.offsets.windows(2).map(|w| &self.corners[w[0] as usize..w[1] as usize])
@@ -354,13 +371,11 @@ mod tests {
     /// Irregularity inside a filling: new vertices and all faces; checks that it is a disk.
     fn irregularity(filling: &Filling) -> u32 {
         let mut edges = BTreeMap::<(u32, u32), u32>::new();
-        let mut valence = vec![0; (filling.rim + filling.interior) as usize];
         for face in filling.faces() {
             for (i, &a) in face.iter().enumerate() {
                 let b = face[(i + 1) % face.len()];
                 assert_ne!(a, b);
                 assert!(edges.insert((a, b), 1).is_none(), "edge {a}-{b} twice the same way");
-                valence[a as usize] += 1;
             }
         }
         let rim_edges =
@@ -371,12 +386,10 @@ mod tests {
         let (v, e, f) = (
             i64::from(filling.rim + filling.interior),
             (edges.len() as i64 + i64::from(filling.rim)) / 2,
-            filling.offsets.len() as i64 - 1,
+            filling.face_count() as i64,
         );
         assert_eq!(v - e + f, 1, "a disk");
-        let vertices: u32 =
-            valence[filling.rim as usize..].iter().map(|&n: &u32| n.abs_diff(4)).sum();
-        vertices + filling.faces().map(|f| (f.len() as u32).abs_diff(4)).sum::<u32>()
+        filling.irregularity()
     }
 
     fn rim(sides: &[u32]) -> (usize, Vec<usize>) {

@@ -1,6 +1,70 @@
-//! The planner: which edits to make.
+//! The planner: finds irregular elements, plans their cancellation, and makes the edits.
+//!
+//! Stage by stage the exchange rate λ (degrees of corner angle for one element less) and the size
+//! of patches grow; in each stage, rounds of moves (local reductions, and walks found by shortest
+//! paths in the [`movement`] graph) are followed by rounds of refills, each edit judged by the
+//! [`gate`]; then everything is smoothed. Source: Peng & Wonka 2013, section 4, which leaves the
+//! automation as future work.
 
 pub mod clusters;
 pub mod cost;
+pub mod edit;
+pub mod gate;
 pub mod local;
 pub mod movement;
+pub mod schedule;
+pub mod worker;
+
+use crate::knobs::knobs;
+
+knobs! {
+    /// How edits are searched for.
+    pub struct PlanOptions in "plan" {
+        /// Stages, each with a larger exchange rate and larger patches.
+        stages: u32 = 4, in 0.0..=20.0, "count";
+        /// Exchange rate of the first stage.
+        lambda_first: f64 = 40.0, in 0.0..=100000.0, "degree-corners per element";
+        /// Exchange rate of the last stage.
+        lambda_last: f64 = 300.0, in 0.0..=100000.0, "degree-corners per element";
+        /// Most rounds of moves, and most rounds of refills, in a stage.
+        rounds: u32 = 4, in 0.0..=100.0, "count";
+        /// Most steps that a dislocation walks.
+        reach: u32 = 16, in 0.0..=100.0, "steps";
+        /// Operations in a local reduction.
+        depth: u32 = 2, in 0.0..=2.0, "operations";
+        /// Candidates of each kind that are judged for an element.
+        tries: u32 = 3, in 1.0..=50.0, "count";
+        /// Nearest irregular elements that a patch around an element may take in.
+        partners: u32 = 6, in 0.0..=50.0, "count";
+        /// Most faces of a patch in the first stage.
+        patch_faces_first: u32 = 60, in 0.0..=100000.0, "faces";
+        /// Most faces of a patch in the last stage.
+        patch_faces_last: u32 = 600, in 0.0..=100000.0, "faces";
+        /// Fillings of a patch that are judged.
+        fillings: u32 = 2, in 1.0..=20.0, "count";
+        /// Largest |ln| of the number of edges of the mesh over that of the input.
+        size_drift: f64 = 0.06, in 0.0..=3.0, "ln";
+        /// Iterations of smoothing before the first stage and after each.
+        smooth_between: u32 = 40, in 0.0..=5000.0, "count";
+    }
+}
+
+impl PlanOptions {
+    /// Exchange rate of stage `i` of [`Self::stages`], from 0: geometric between first and last.
+    #[must_use]
+    pub fn lambda(&self, i: u32) -> f64 {
+        self.between(self.lambda_first, self.lambda_last, i)
+    }
+
+    /// Most faces of a patch in stage `i`.
+    #[must_use]
+    pub fn patch_faces(&self, i: u32) -> usize {
+        let (first, last) = (f64::from(self.patch_faces_first), f64::from(self.patch_faces_last));
+        self.between(first, last, i).round() as usize
+    }
+
+    fn between(&self, first: f64, last: f64, i: u32) -> f64 {
+        let share = f64::from(i) / f64::from(self.stages.saturating_sub(1).max(1));
+        if first > 0.0 { first * (last / first).powf(share) } else { last * share }
+    }
+}

@@ -42,6 +42,7 @@ struct Place {
     depth: u16,
     displacement: Displacement,
     goal: Option<Cancellation>,
+    gain: u32,
 }
 
 /// A weighted step of the movement graph.
@@ -97,6 +98,7 @@ impl<'m, 'o> MovementGraph<'m, 'o> {
             depth: 0,
             displacement: Displacement::default(),
             goal: None,
+            gain: 0,
         };
         let found = FxHashMap::from_iter([(origin.displacement, 0)]);
         let state = State { mesh, places: vec![origin], found, edges: vec![None] };
@@ -113,6 +115,11 @@ impl<'m, 'o> MovementGraph<'m, 'o> {
     /// What happens at this node, if it is a goal.
     pub fn cancellation(&self, node: Node) -> Option<Cancellation> {
         self.state.borrow().places[node as usize].goal
+    }
+
+    /// How many irregular elements fewer there are at this node; 0 unless it is a goal.
+    pub fn gain(&self, node: Node) -> u32 {
+        self.state.borrow().places[node as usize].gain
     }
 
     /// The steps from the start to `node`.
@@ -188,11 +195,11 @@ impl State<'_> {
             depth: here.depth + 1,
             displacement: here.displacement + step.displacement(),
             goal: None,
+            gain: 0,
         };
         if done.delta < 0 {
             let kind = match done.delta {
-                -1..=0 => return None,
-                -3..=-2 => Cancellation::Triple,
+                -3..=0 => Cancellation::Triple,
                 _ if was_t_junction => Cancellation::TJunctionPair,
                 _ => Cancellation::Quadruple,
             };
@@ -201,7 +208,7 @@ impl State<'_> {
                 Cancellation::TJunctionPair => costs.t_junction_pair,
                 Cancellation::Quadruple => costs.quadruple,
             };
-            let target = self.add(Place { goal: Some(kind), ..place });
+            let target = self.add(Place { goal: Some(kind), gain: done.delta.unsigned_abs(), ..place });
             return Some(Movement { source: node, target, cost: cost + extra });
         }
         if done.delta > 0 || done.dipole.is_none() {

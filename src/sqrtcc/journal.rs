@@ -14,6 +14,7 @@ pub(super) enum Slot {
     Position,
     NewVertex,
     NewQuad,
+    QuadDied,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -71,6 +72,7 @@ impl QuadMesh {
                 }
                 Slot::NewVertex => self.pop_vertex(),
                 Slot::NewQuad => self.pop_quad(),
+                Slot::QuadDied => self.quads_alive += 1,
             }
         }
     }
@@ -90,7 +92,7 @@ impl QuadMesh {
             .filter_map(|e| match e.slot {
                 Slot::Out | Slot::Valence | Slot::Position => Some([e.index, e.index]),
                 Slot::Origin => Some([e.old, self.origin[e.index as usize]]),
-                Slot::Twin | Slot::NewVertex | Slot::NewQuad => None,
+                Slot::Twin | Slot::NewVertex | Slot::NewQuad | Slot::QuadDied => None,
             })
             .flatten()
             .filter(|&v| v != crate::mesh::NONE)
@@ -113,5 +115,6 @@ impl QuadMesh {
         self.twin.truncate(self.twin.len() - 4);
         self.kind.pop();
         self.ideal.truncate(self.ideal.len() - 2);
+        self.quads_alive -= 1;
     }
 }

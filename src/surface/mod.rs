@@ -17,3 +17,9 @@ pub use features::{Crease, FeatureOptions, SharpLines, mean_edge, mesh_features}
 pub use reference::{Hit, Reference, SurfaceError};
 pub use samples::{Deviation, deviation, sample_triangles};
 pub use triangulation::{Triangulation, triangulate};
+
+/// Squared distance from a point to a triangle, in squared units of the file. O(1).
+#[must_use]
+pub fn squared_distance(query: &crate::mesh::Point, triangle: &[crate::mesh::Point; 3]) -> f64 {
+    (tree::closest_on_triangle(query, triangle) - query).norm_squared()
+}

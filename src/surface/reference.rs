@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 use super::features::{Crease, border_edges, creases};
-use super::samples::sample_triangles;
+use super::samples::{sample_places, sample_triangles};
 use super::tree::{Best, Tree};
 use super::triangulation::{Triangulation, triangulate};
 use crate::mesh::{Point, PolyMesh, Topology, Vector};
@@ -201,6 +201,12 @@ impl Reference {
     #[must_use]
     pub fn samples(&self, count: usize) -> Vec<Point> {
         sample_triangles(&self.points, &self.triangles, count)
+    }
+
+    /// The same points, each with the triangle that it is on.
+    #[must_use]
+    pub fn sample_places(&self, count: usize) -> Vec<(u32, Point)> {
+        sample_places(&self.points, &self.triangles, count)
     }
 
     fn start(&self, query: &Point, last: u32) -> Best {

@@ -13,6 +13,15 @@ use crate::mesh::Point;
 /// O(triangles + count).
 #[must_use]
 pub fn sample_triangles(points: &[Point], triangles: &[[u32; 3]], count: usize) -> Vec<Point> {
+    sample_places(points, triangles, count).into_iter().map(|s| s.1).collect()
+}
+
+/// The same samples, each with the triangle that it is on.
+pub(super) fn sample_places(
+    points: &[Point],
+    triangles: &[[u32; 3]],
+    count: usize,
+) -> Vec<(u32, Point)> {
     let corners = |t: &[u32; 3]| t.map(|v| points[v as usize]);
     let area = |t: &[u32; 3]| {
         let [a, b, c] = corners(t);
@@ -20,12 +29,12 @@ pub fn sample_triangles(points: &[Point], triangles: &[[u32; 3]], count: usize) 
     };
     let total: f64 = triangles.iter().map(area).sum();
     let (mut out, mut done) = (Vec::with_capacity(count), 0.0);
-    for t in triangles {
+    for (number, t) in triangles.iter().enumerate() {
         done += area(t);
         // Sample i stands in the middle of its share of the area, (i + 1/2) / count.
         while out.len() < count && (out.len() as f64 + 0.5) * total < done * count as f64 {
             let place = place_in_triangle(out.len(), &corners(t));
-            out.push(place);
+            out.push((number as u32, place));
         }
     }
     out

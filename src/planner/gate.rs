@@ -1,0 +1,312 @@
+//! The quality gate: an edit is judged by what its surroundings look like once they have relaxed.
+//!
+//! Accepted are edits after which, over the whole relaxed region, the least scaled Jacobian is
+//! still good or as good as before, corner angles have not grown worse by more than the exchange
+//! rate λ per irregular element removed, and the surface is within the budget, both ways.
+
+use crate::knobs::knobs;
+use crate::mesh::{NONE, Point, Vector};
+use crate::smooth::{Orientation, Region as Patch, RelaxOptions, relax_local};
+use crate::sqrtcc::{Mark, QuadMesh, Vertex};
+use crate::surface::{Reference, squared_distance};
+use smallvec::SmallVec;
+
+knobs! {
+    /// What an edit may cost in shape and distance.
+    pub struct GateOptions in "gate" {
+        /// Rings of faces around an edit that relax with it.
+        rings: u32 = 4, in 1.0..=12.0, "rings";
+        /// Iterations of relaxing after single operations and walks.
+        sweeps: u32 = 24, in 1.0..=1000.0, "count";
+        /// Iterations of relaxing after a refill, beside the square root of its number of faces.
+        refill_sweeps: u32 = 30, in 1.0..=1000.0, "count";
+        /// Least scaled Jacobian of a quad, unless it was less before.
+        min_jacobian: f64 = 0.4, in -1.0..=1.0, "1";
+        /// Distance to the reference that an edit may cause, as a multiple of the input's.
+        distance: f64 = 1.0, in 0.1..=10.0, "input Hausdorff distances";
+        /// Largest |ln| of the number of faces after over before a refill.
+        area: f64 = 0.3, in 0.0..=3.0, "ln";
+    }
+}
+
+/// What the gate needs to know beside the mesh.
+#[derive(Debug, Clone, Copy)]
+pub struct Setting<'a> {
+    /// The surface to stay on.
+    pub reference: &'a Reference,
+    /// How the mesh is oriented against it.
+    pub orientation: Orientation,
+    /// How vertices relax.
+    pub relax: &'a RelaxOptions,
+    /// The limits.
+    pub options: &'a GateOptions,
+    /// Largest distance to the reference, in units of the file.
+    pub distance: f64,
+    /// A triangle of the reference near each vertex, by id; [`NONE`] or missing if unknown.
+    pub near: &'a [u32],
+}
+
+/// An edit that passed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Passed {
+    /// Growth of Σ |angle − ideal| over all corners of the region, degrees.
+    pub angle_growth: f64,
+    /// Where the free vertices of the region are now.
+    pub moved: Vec<(Vertex, Point)>,
+}
+
+/// Why an edit was turned down.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Failure {
+    /// A quad would be too bad.
+    Jacobian,
+    /// Angles would grow worse than the elements removed are worth.
+    Angles,
+    /// The mesh would leave the reference.
+    Distance,
+}
+
+/// How well shaped some faces are.
+#[derive(Debug, Clone, Copy)]
+struct Shape {
+    /// Σ |angle − ideal| over corners, degrees.
+    angles: f64,
+    /// Least scaled Jacobian of the quads, against the reference.
+    jacobian: f64,
+}
+
+/// Judges edits; keeps its arrays from one to the next.
+#[derive(Debug, Clone, Default)]
+pub struct Gate {
+    stamp: Vec<u32>,
+    number: Vec<u32>,
+    epoch: u32,
+    faces: Vec<Vertex>,
+    vertices: Vec<Vertex>,
+    free: Vec<bool>,
+    /// Faces of the region, as numbers of the patch, that the edit made or changed.
+    changed: Vec<u32>,
+    patch: Patch,
+}
+
+impl Gate {
+    /// Judges what was done to `mesh` since `mark`, `gain` elements removed at λ degrees each.
+    /// The mesh is as before the edit afterwards: a caller that wants it makes it again.
+    pub fn judge(
+        &mut self,
+        mesh: &mut QuadMesh,
+        mark: Mark,
+        setting: &Setting,
+        (sweeps, gain, lambda): (u32, u32, f64),
+    ) -> Result<Passed, Failure> {
+        let touched = mesh.touched_since(mark);
+        self.gather(mesh, &touched, setting);
+        // The patch holds a copy of the edited surroundings: the mesh can go back already.
+        mesh.undo_to(mark);
+        let before = self.shape_before(mesh, &touched, setting);
+        let allowed = lambda * f64::from(gain);
+        let quick = sweeps / 3;
+        relax_local(&mut self.patch, setting.reference, setting.relax, quick);
+        if self.shape_after().angles - before.angles > 6.0 * allowed + 0.5 * before.angles {
+            return Err(Failure::Angles);
+        }
+        relax_local(&mut self.patch, setting.reference, setting.relax, sweeps - quick);
+        let after = self.shape_after();
+        if after.jacobian < setting.options.min_jacobian.min(before.jacobian) {
+            return Err(Failure::Jacobian);
+        }
+        if after.angles - before.angles > allowed {
+            return Err(Failure::Angles);
+        }
+        if self.leaves_surface(setting) || self.uncovers(mesh, &touched, setting) {
+            return Err(Failure::Distance);
+        }
+        let places = self.vertices.iter().zip(0..).filter(|&(_, i)| self.free[i as usize]);
+        let moved = places.map(|(&v, i)| (v, self.patch.point(i))).collect();
+        Ok(Passed { angle_growth: after.angles - before.angles, moved })
+    }
+
+    /// The faces within some rings of what was touched; vertices all of whose faces are among
+    /// them and that nothing holds are free.
+    fn gather(&mut self, mesh: &QuadMesh, touched: &[Vertex], setting: &Setting) {
+        self.stamp.resize(mesh.vertex_ids() as usize, 0);
+        self.number.resize(mesh.vertex_ids() as usize, 0);
+        self.epoch += 1;
+        self.faces.clear();
+        self.vertices.clear();
+        for &v in touched {
+            if v >= mesh.vertex_ids() || !mesh.is_alive(v) || mesh.is_ghost(v) {
+                continue;
+            }
+            if mesh.is_face(v) {
+                mesh.neighbours(v).for_each(|p| self.add_vertex(mesh, p));
+            } else {
+                self.add_vertex(mesh, v);
+            }
+        }
+        let mut first = 0;
+        for _ in 0..setting.options.rings {
+            let end = self.vertices.len();
+            for i in first..end {
+                self.add_faces_of(mesh, self.vertices[i]);
+            }
+            first = end;
+        }
+        self.changed.clear();
+        let changed = self.faces.iter().zip(0..).filter(|(f, _)| touched.binary_search(f).is_ok());
+        self.changed.extend(changed.map(|(_, i)| i));
+        self.fill_patch(mesh, first, setting);
+    }
+
+    fn add_vertex(&mut self, mesh: &QuadMesh, v: Vertex) {
+        if self.stamp[v as usize] != self.epoch && !mesh.is_ghost(v) {
+            self.stamp[v as usize] = self.epoch;
+            self.number[v as usize] = self.vertices.len() as u32;
+            self.vertices.push(v);
+        }
+    }
+
+    fn add_faces_of(&mut self, mesh: &QuadMesh, v: Vertex) {
+        for f in mesh.neighbours(v) {
+            if self.stamp[f as usize] != self.epoch && !mesh.is_ghost(f) {
+                self.stamp[f as usize] = self.epoch;
+                self.faces.push(f);
+                mesh.neighbours(f).for_each(|p| self.add_vertex(mesh, p));
+            }
+        }
+    }
+
+    fn fill_patch(&mut self, mesh: &QuadMesh, expanded: usize, setting: &Setting) {
+        self.patch.begin(setting.orientation);
+        self.free.clear();
+        for (i, &v) in self.vertices.iter().enumerate() {
+            let near = setting.near.get(v as usize).copied().filter(|&t| t != NONE);
+            let free = i < expanded && !mesh.is_held(v);
+            self.free.push(free);
+            self.patch.add_vertex(mesh.position(v), !free, near);
+        }
+        let mut corners: SmallVec<[u32; 8]> = SmallVec::new();
+        for &f in &self.faces {
+            corners.clear();
+            corners.extend(mesh.neighbours(f).map(|v| self.number[v as usize]));
+            self.patch.add_face(&corners);
+        }
+    }
+
+    /// The shape of the relaxed region.
+    fn shape_after(&self) -> Shape {
+        let mut shape = Shape::default();
+        let mut points: SmallVec<[Point; 8]> = SmallVec::new();
+        for f in 0..self.patch.face_count() {
+            points.clear();
+            points.extend(self.patch.face(f).iter().map(|&v| self.patch.point(v)));
+            let up = self.patch.face(f).iter().map(|&v| self.patch.normal(v)).sum();
+            shape.add(&points, &up);
+        }
+        shape
+    }
+
+    /// The shape of the same part of the mesh before the edit: the faces of the region that were
+    /// there, and those that the edit removed.
+    fn shape_before(&mut self, mesh: &QuadMesh, touched: &[Vertex], setting: &Setting) -> Shape {
+        let mut shape = Shape::default();
+        let mut points: SmallVec<[Point; 8]> = SmallVec::new();
+        let in_region = |&&v: &&Vertex| self.stamp.get(v as usize) != Some(&self.epoch);
+        for &f in self.faces.iter().chain(touched.iter().filter(in_region)) {
+            if f >= mesh.vertex_ids() || !mesh.is_alive(f) || !mesh.is_face(f) || mesh.is_ghost(f) {
+                continue;
+            }
+            points.clear();
+            points.extend(mesh.neighbours(f).map(|v| mesh.position(v)));
+            let corner = mesh.target(mesh.out(f));
+            let near = setting.near.get(corner as usize).copied().filter(|&t| t != NONE);
+            let up = near.map_or_else(Vector::zeros, |t| {
+                setting.reference.normal(t) * setting.orientation.sign()
+            });
+            shape.add(&points, &up);
+        }
+        shape
+    }
+
+    /// Whether the middle of a face that the edit made or changed is too far from the reference.
+    fn leaves_surface(&self, setting: &Setting) -> bool {
+        self.changed.iter().any(|&i| {
+            let near = self.patch.triangle(self.patch.face(i as usize)[0]);
+            setting.reference.closest_near(&self.middle(i), near).distance > setting.distance
+        })
+    }
+
+    fn middle(&self, face: u32) -> Point {
+        let face = self.patch.face(face as usize);
+        let sum: Vector = face.iter().map(|&v| self.patch.point(v).coords).sum();
+        Point::from(sum / face.len() as f64)
+    }
+
+    /// Whether a vertex that the edit removed or changed is too far from the faces it made.
+    fn uncovers(&self, mesh: &QuadMesh, touched: &[Vertex], setting: &Setting) -> bool {
+        const MOST_PROBES: usize = 48;
+        let is_old = |&v: &Vertex| {
+            v < mesh.vertex_ids() && mesh.is_alive(v) && !mesh.is_ghost(v) && !mesh.is_face(v)
+        };
+        let old: Vec<Vertex> = touched.iter().copied().filter(is_old).collect();
+        let triangles: Vec<[Point; 3]> = self.changed.iter().flat_map(|&i| self.fan(i)).collect();
+        let allowed = setting.distance * setting.distance;
+        let every = old.len().div_ceil(MOST_PROBES).max(1);
+        old.iter().step_by(every).any(|&v| {
+            let p = mesh.position(v);
+            triangles.iter().all(|t| squared_distance(&p, t) > allowed)
+        })
+    }
+
+    /// A face of the patch as triangles around its middle.
+    fn fan(&self, face: u32) -> impl Iterator<Item = [Point; 3]> + '_ {
+        let middle = self.middle(face);
+        let face = self.patch.face(face as usize);
+        (0..face.len()).map(move |k| {
+            let [a, b] = [face[k], face[(k + 1) % face.len()]].map(|v| self.patch.point(v));
+            [middle, a, b]
+        })
+    }
+}
+
+impl Default for Shape {
+    fn default() -> Self {
+        Self { angles: 0.0, jacobian: 1.0 }
+    }
+}
+
+impl Shape {
+    /// Adds a face; `up` decides which way round a quad is meant to be.
+    fn add(&mut self, points: &[Point], up: &Vector) {
+        let n = points.len();
+        let ideal = 180.0 - 360.0 / n as f64;
+        let normal = if n == 4 {
+            (points[2] - points[0]).cross(&(points[3] - points[1]))
+        } else {
+            (1..n - 1)
+                .map(|i| (points[i] - points[0]).cross(&(points[i + 1] - points[0])))
+                .sum::<Vector>()
+        };
+        let along = if normal.dot(up) < 0.0 { -1.0 } else { 1.0 };
+        let unit = normal.try_normalize(0.0).unwrap_or_else(Vector::zeros);
+        for i in 0..n {
+            let to_next = points[(i + 1) % n] - points[i];
+            let to_prev = points[(i + n - 1) % n] - points[i];
+            let scale = (to_next.norm_squared() * to_prev.norm_squared()).sqrt();
+            let sine = to_next.cross(&to_prev).dot(&unit) / scale;
+            let angle = if scale > 0.0 {
+                let cosine = (to_next.dot(&to_prev) / scale).clamp(-1.0, 1.0);
+                let turn = cosine.acos().to_degrees();
+                if sine < 0.0 { 360.0 - turn } else { turn }
+            } else {
+                0.0
+            };
+            self.angles += (angle - ideal).abs();
+            if n == 4 {
+                let jacobian = if scale > 0.0 { along * sine } else { -1.0 };
+                self.jacobian = self.jacobian.min(jacobian);
+            }
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! Rounds of planning and committing.
+//!
+//! All irregular elements are planned for in parallel on copies of the same state; the proposals
+//! are sorted by gain, cost and id and committed in that order, as long as the places they change
+//! have not been changed in this round; the rest is planned again. The result therefore does not
+//! depend on the number of threads.
+
+use super::edit::Edit;
+use super::gate::Failure;
+use super::worker::{Outcome, Proposal, Task, Worker};
+use crate::mesh::Point;
+use crate::sqrtcc::{QuadMesh, Vertex};
+use crate::watch::{Phase, Watch};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+
+/// An edit that was made.
+#[derive(Debug, Clone, Serialize)]
+pub struct EditRecord {
+    /// The round in which it was made, from 1.
+    pub round: u32,
+    /// Irregular elements fewer.
+    pub gain: u32,
+    /// Cost of the path, 0 for refills.
+    pub cost: f64,
+    /// Growth of Σ |angle − ideal| around it, degrees.
+    pub angle_growth_deg: f64,
+    /// Where it was made.
+    pub place: [f64; 3],
+    /// What was done.
+    #[serde(flatten)]
+    pub edit: Edit,
+}
+
+/// What a round did.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct RoundRecord {
+    /// Degrees of corner angle that an element less could cost.
+    pub lambda: f64,
+    /// Elements that edits were looked for.
+    pub seeds: usize,
+    /// Edits proposed.
+    pub proposed: usize,
+    /// Edits made.
+    pub made: usize,
+    /// Edits that the gate turned down, by reason.
+    pub turned_down: BTreeMap<Failure, usize>,
+    /// Irregularity after the round, boundaries and features included.
+    pub irregularity: u64,
+}
+
+/// The state of planning over all rounds.
+#[derive(Debug)]
+pub struct Schedule {
+    workers: Vec<Mutex<Worker>>,
+    /// The round in which the connectivity around a vertex last changed.
+    changed: Vec<u32>,
+    /// What each vertex, as a seed, depended on when it last failed, and in which round.
+    failed: BTreeMap<Vertex, (u32, Vec<Vertex>)>,
+    round: u32,
+    quads_at_start: i64,
+    /// The edits made so far.
+    pub edits: Vec<EditRecord>,
+    /// The rounds so far.
+    pub rounds: Vec<RoundRecord>,
+}
+
+impl Schedule {
+    /// Nothing done yet to `mesh`.
+    #[must_use]
+    pub fn new(mesh: &QuadMesh) -> Self {
+        let workers = (0..=rayon::current_num_threads()).map(|_| Mutex::default()).collect();
+        Self {
+            workers,
+            changed: Vec::new(),
+            failed: BTreeMap::new(),
+            round: 0,
+            quads_at_start: mesh.quads_alive(),
+            edits: Vec::new(),
+            rounds: Vec::new(),
+        }
+    }
+
+    /// Lets every element be tried again: the rules have changed.
+    pub fn forget_failures(&mut self) {
+        self.failed.clear();
+    }
+
+    /// One round; the number of edits made.
+    pub fn round(&mut self, mesh: &mut QuadMesh, task: &Task, watch: &dyn Watch) -> usize {
+        self.round += 1;
+        let seeds = self.seeds(mesh);
+        let outcomes = self.plan(mesh, &seeds, task, watch);
+        let mut record = RoundRecord { lambda: task.lambda, seeds: seeds.len(), ..RoundRecord::default() };
+        let mut proposals = Vec::new();
+        for (seed, outcome) in seeds.into_iter().zip(outcomes) {
+            for failure in outcome.failures {
+                *record.turned_down.entry(failure).or_default() += 1;
+            }
+            match outcome.proposal {
+                Some(proposal) => proposals.push(proposal),
+                None => drop(self.failed.insert(seed, (self.round, outcome.scope))),
+            }
+        }
+        record.proposed = proposals.len();
+        record.made = self.commit(mesh, proposals, task);
+        record.irregularity = mesh.total_irregularity();
+        let made = record.made;
+        self.rounds.push(record);
+        made
+    }
+
+    /// Irregular elements that have not failed, or around which something has changed since.
+    fn seeds(&mut self, mesh: &QuadMesh) -> Vec<Vertex> {
+        self.changed.resize(mesh.vertex_ids() as usize, 0);
+        let fresh = |v: &Vertex| {
+            self.failed.get(v).is_none_or(|(round, scope)| {
+                scope.iter().any(|&s| self.changed[s as usize] >= *round)
+            })
+        };
+        mesh.vertices().filter(|&v| mesh.irregularity(v) > 0).filter(fresh).collect()
+    }
+
+    fn plan(&self, mesh: &QuadMesh, seeds: &[Vertex], task: &Task, watch: &dyn Watch) -> Vec<Outcome> {
+        for worker in &self.workers {
+            lock(worker).sync(mesh);
+        }
+        let done = std::sync::atomic::AtomicUsize::new(0);
+        let left = mesh.total_irregularity() as usize;
+        seeds
+            .par_iter()
+            .with_max_len(8)
+            .map(|&seed| {
+                if watch.cancelled() {
+                    return Outcome::default();
+                }
+                let index = rayon::current_thread_index().map_or(0, |i| i + 1);
+                let outcome = lock(&self.workers[index % self.workers.len()]).propose(seed, task);
+                let count = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
+                watch.progress(Phase::Plan, count, seeds.len(), Some(left));
+                outcome
+            })
+            .collect()
+    }
+
+    /// Makes the proposals, best first, that do not meet one made before them in this round.
+    fn commit(&mut self, mesh: &mut QuadMesh, mut proposals: Vec<Proposal>, task: &Task) -> usize {
+        proposals.sort_by(|a, b| {
+            let value = |p: &Proposal| f64::from(p.gain) * task.lambda.max(1.0) - p.angle_growth;
+            b.gain.cmp(&a.gain).then(value(b).total_cmp(&value(a))).then(a.seed.cmp(&b.seed))
+        });
+        let planned = (mesh.vertex_ids(), mesh.quad_ids());
+        let mut moved_in_round = vec![false; planned.0 as usize];
+        let mut made = 0;
+        for proposal in proposals {
+            let free = |&v: &Vertex| v >= planned.0 || self.changed[v as usize] < self.round;
+            if !proposal.core.iter().all(free) || self.drifts(mesh, &proposal, task) {
+                continue;
+            }
+            let first_new = mesh.vertex_ids();
+            if proposal.edit.run(mesh, planned.1).is_ok() {
+                self.place(mesh, &proposal, (planned.0, first_new), &mut moved_in_round);
+                self.record(proposal);
+                made += 1;
+            }
+        }
+        mesh.commit();
+        made
+    }
+
+    /// Whether the edit takes the size of the mesh farther from that of the input than allowed.
+    fn drifts(&self, mesh: &QuadMesh, proposal: &Proposal, task: &Task) -> bool {
+        let drift = |quads: i64| (quads as f64 / self.quads_at_start as f64).ln().abs();
+        let now = mesh.quads_alive();
+        let after = drift(now + proposal.quads_added);
+        after > task.plan.size_drift && after > drift(now)
+    }
+
+    /// Moves vertices to where they relaxed: the changed ones, and those around them that no
+    /// earlier edit of the round has moved.
+    fn place(&mut self, mesh: &mut QuadMesh, proposal: &Proposal, (planned, first_new): (u32, u32), moved: &mut [bool]) {
+        for &v in &proposal.core {
+            if v < planned {
+                self.changed[v as usize] = self.round;
+            }
+        }
+        for &(v, point) in &proposal.moved {
+            if v >= planned {
+                mesh.set_position(v - planned + first_new, point);
+            } else if !moved[v as usize] || proposal.core.binary_search(&v).is_ok() {
+                moved[v as usize] = true;
+                mesh.set_position(v, point);
+            }
+        }
+    }
+
+    fn record(&mut self, proposal: Proposal) {
+        let place = proposal.moved.first().map_or_else(Point::origin, |m| m.1);
+        self.edits.push(EditRecord {
+            round: self.round,
+            gain: proposal.gain,
+            cost: proposal.cost,
+            angle_growth_deg: proposal.angle_growth,
+            place: place.coords.into(),
+            edit: proposal.edit,
+        });
+    }
+}
+
+/// A worker is only ever used by one thread at a time; one that panicked is as good as new,
+/// since it takes over the mesh before it is used again.
+fn lock(worker: &Mutex<Worker>) -> std::sync::MutexGuard<'_, Worker> {
+    worker.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+}

@@ -1,0 +1,210 @@
+//! Finding the best edit for one irregular element, on a copy of the mesh that is left as it was.
+
+use super::clusters::{Clusters, Limits};
+use super::cost::CostOptions;
+use super::edit::{Edit, walk_terms};
+use super::gate::{Failure, Gate, Passed, Setting};
+use super::movement::MovementGraph;
+use super::{PlanOptions, local};
+use crate::mesh::Point;
+use crate::moves::Dipole;
+use crate::patch::{Refill, Region, fillings};
+use crate::sqrtcc::{QuadMesh, Vertex};
+
+/// An edit that passed the gate, not yet made.
+#[derive(Debug, Clone)]
+pub struct Proposal {
+    /// The edit.
+    pub edit: Edit,
+    /// The irregular element that it began with.
+    pub seed: Vertex,
+    /// Irregular elements fewer.
+    pub gain: u32,
+    /// Cost of the path, or 0.
+    pub cost: f64,
+    /// Growth of Σ |angle − ideal|, degrees.
+    pub angle_growth: f64,
+    /// Change of the number of quads of Q (edges of the polygon mesh).
+    pub quads_added: i64,
+    /// Vertices whose connectivity it changes, and their neighbours: sorted.
+    pub core: Vec<Vertex>,
+    /// Where vertices go.
+    pub moved: Vec<(Vertex, Point)>,
+}
+
+/// What came of looking for an edit.
+#[derive(Debug, Clone, Default)]
+pub struct Outcome {
+    /// The best edit that passed.
+    pub proposal: Option<Proposal>,
+    /// Edits that the gate turned down.
+    pub failures: Vec<Failure>,
+    /// Vertices on which the outcome depends: without a change there it will be the same.
+    pub scope: Vec<Vertex>,
+}
+
+/// What is looked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Stage {
+    /// Local reductions and walks.
+    Moves,
+    /// Refills of patches of at most so many faces.
+    Refills {
+        /// Most faces.
+        faces: usize,
+    },
+}
+
+/// All that a worker needs to know.
+#[derive(Debug, Clone, Copy)]
+pub struct Task<'a> {
+    /// What to look for.
+    pub stage: Stage,
+    /// Degrees of corner angle that an irregular element less may cost.
+    pub lambda: f64,
+    /// The knobs of the search.
+    pub plan: &'a PlanOptions,
+    /// The weights of the steps.
+    pub costs: &'a CostOptions,
+    /// The gate.
+    pub gate: Setting<'a>,
+}
+
+/// A copy of the mesh, and the arrays that planning needs.
+#[derive(Debug, Clone, Default)]
+pub struct Worker {
+    mesh: QuadMesh,
+    gate: Gate,
+    clusters: Clusters,
+}
+
+/// A candidate: elements fewer, cost, edit.
+type Candidate = (u32, f64, Edit);
+
+impl Worker {
+    /// Takes over the state of the mesh.
+    pub fn sync(&mut self, mesh: &QuadMesh) {
+        self.mesh.clone_from(mesh);
+    }
+
+    /// The best edit that begins with `seed`.
+    pub fn propose(&mut self, seed: Vertex, task: &Task) -> Outcome {
+        let mut outcome = Outcome { scope: vec![seed], ..Outcome::default() };
+        match task.stage {
+            Stage::Moves => self.propose_move(seed, task, &mut outcome),
+            Stage::Refills { faces } => self.propose_refill(seed, faces, task, &mut outcome),
+        }
+        outcome.scope.sort_unstable();
+        outcome.scope.dedup();
+        outcome
+    }
+
+    fn propose_move(&mut self, seed: Vertex, task: &Task, outcome: &mut Outcome) {
+        let mut candidates = self.reductions(seed, task.plan);
+        let handles: Vec<Dipole> = self
+            .mesh
+            .outgoing(seed)
+            .flat_map(|h| [Dipole(h), Dipole(self.mesh.twin(h))])
+            .filter(|d| d.stands(&self.mesh))
+            .collect();
+        for dipole in handles {
+            candidates.extend(self.walks(dipole, task));
+        }
+        candidates.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.total_cmp(&b.1)));
+        for candidate in candidates.into_iter().take(task.plan.tries as usize) {
+            let sweeps = task.gate.options.sweeps;
+            if let Some(proposal) = self.attempt(seed, candidate, sweeps, task, outcome) {
+                outcome.proposal = Some(proposal);
+                return;
+            }
+        }
+    }
+
+    fn reductions(&mut self, seed: Vertex, plan: &PlanOptions) -> Vec<Candidate> {
+        let found = local::reductions(&mut self.mesh, seed, plan.depth);
+        let candidates = found.into_iter().take(plan.tries as usize);
+        candidates.map(|(delta, ops)| (delta.unsigned_abs(), ops.len() as f64, Edit::Local { ops })).collect()
+    }
+
+    /// The cheapest ways for a dislocation to be absorbed.
+    fn walks(&mut self, start: Dipole, task: &Task) -> Vec<Candidate> {
+        let graph = MovementGraph::new(&mut self.mesh, start, task.plan.reach as u16, task.costs);
+        let (mut goals, mut found) = (Vec::new(), Vec::new());
+        for _ in 0..task.plan.tries {
+            let Some((node, cost)) = graph.search(&goals) else { break };
+            goals.push(node);
+            found.push((node, cost, graph.steps(node), graph.gain(node)));
+        }
+        let paths: Vec<_> = found.into_iter().filter_map(|(n, c, s, g)| Some((c, s, g, graph.cancellation(n)?))).collect();
+        drop(graph);
+        paths
+            .into_iter()
+            .map(|(cost, steps, gain, cancellation)| {
+                let terms = walk_terms(&mut self.mesh, start, &steps, task.costs);
+                (gain, cost, Edit::Walk { cancellation, start, steps, terms })
+            })
+            .collect()
+    }
+
+    fn propose_refill(&mut self, seed: Vertex, faces: usize, task: &Task, outcome: &mut Outcome) {
+        let limits = Limits { faces, partners: task.plan.partners as usize };
+        let regions = self.clusters.around(&self.mesh, seed, limits);
+        if let Some(largest) = regions.last() {
+            outcome.scope.extend(largest.faces.iter().chain(&largest.interior));
+        }
+        for region in regions {
+            if let Some(best) = self.best_filling(seed, &region, task, outcome) {
+                outcome.proposal = Some(best);
+                return;
+            }
+        }
+    }
+
+    /// The filling of a region that passes with the least growth of angles.
+    fn best_filling(&mut self, seed: Vertex, region: &Region, task: &Task, outcome: &mut Outcome) -> Option<Proposal> {
+        let sweeps = task.gate.options.refill_sweeps + (region.faces.len() as f64).sqrt() as u32;
+        let mut best: Option<Proposal> = None;
+        for filling in fillings(region.rim.len(), &region.corners, task.plan.fillings as usize) {
+            let after = region.rim_irregularity_after + filling.irregularity();
+            let growth = (filling.face_count() as f64 / region.faces.len() as f64).ln().abs();
+            if after >= region.irregularity || growth > task.gate.options.area {
+                continue;
+            }
+            let gain = region.irregularity - after;
+            let edit = Edit::Refill(Refill::new(&self.mesh, region, filling));
+            let found = self.attempt(seed, (gain, 0.0, edit), sweeps, task, outcome);
+            let better = |p: &Proposal| best.as_ref().is_none_or(|b| p.angle_growth < b.angle_growth);
+            best = found.filter(better).or(best.take());
+        }
+        best
+    }
+
+    /// Makes an edit, has it judged, and undoes it.
+    fn attempt(&mut self, seed: Vertex, (gain, cost, edit): Candidate, sweeps: u32, task: &Task, outcome: &mut Outcome) -> Option<Proposal> {
+        let mark = self.mesh.mark();
+        let quads = self.mesh.quads_alive();
+        edit.run(&mut self.mesh, self.mesh.quad_ids()).ok()?;
+        let touched = self.mesh.touched_since(mark);
+        let core = self.with_neighbours(&touched);
+        let quads_added = self.mesh.quads_alive() - quads;
+        match self.gate.judge(&mut self.mesh, mark, &task.gate, (sweeps, gain, task.lambda)) {
+            Ok(Passed { angle_growth, moved }) => {
+                Some(Proposal { edit, seed, gain, cost, angle_growth, quads_added, core, moved })
+            }
+            Err(failure) => {
+                outcome.failures.push(failure);
+                outcome.scope.extend(touched.iter().filter(|&&v| v < self.mesh.vertex_ids()));
+                None
+            }
+        }
+    }
+
+    fn with_neighbours(&self, touched: &[Vertex]) -> Vec<Vertex> {
+        let alive = touched.iter().filter(|&&v| self.mesh.is_alive(v) && !self.mesh.is_ghost(v));
+        let mut core: Vec<Vertex> = alive.flat_map(|&v| self.mesh.neighbours(v)).collect();
+        core.extend(touched);
+        core.sort_unstable();
+        core.dedup();
+        core
+    }
+}

@@ -1,0 +1,297 @@
+//! Smoothing a whole mesh within a budget of distance.
+
+use fixedbitset::FixedBitSet;
+
+use super::anchors::{pull, watched};
+use super::guard::{Budget, Finding, Guard, Limits, Mending};
+use super::kernel::Setting;
+use super::region::{Region, orientation};
+use super::{RelaxOptions, SmoothOptions};
+use crate::mesh::{NONE, Point, PolyMesh, Topology};
+use crate::surface::{Deviation, Reference};
+use crate::watch::{Phase, Watch};
+
+/// How smoothing a mesh went.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SmoothReport {
+    /// Iterations done.
+    pub iterations: u32,
+    /// Energy of the last one (see [`super::RelaxReport::energy`]).
+    pub energy: f64,
+    /// Root mean square move of the vertices in the last one, in edges.
+    pub motion: f64,
+    /// Distance to the reference before, in units of the file.
+    pub before: Deviation,
+    /// Distance to the reference after, in units of the file.
+    pub after: Deviation,
+    /// Least scaled Jacobian of the quads before.
+    pub least_jacobian_before: f64,
+    /// Least scaled Jacobian of the quads after.
+    pub least_jacobian_after: f64,
+    /// Vertices that were taken back, in part or altogether, to keep the limits.
+    pub mended: usize,
+}
+
+/// Which vertices must stay: those on boundaries and cuts, and the ends of feature half-edges. O(n).
+#[must_use]
+pub fn held_vertices(mesh: &PolyMesh, topology: &Topology, features: &FixedBitSet) -> Vec<bool> {
+    let mut held = vec![false; mesh.vertex_count()];
+    for (h, &v) in mesh.corners().iter().enumerate() {
+        if topology.twin[h] == NONE || features.contains(h) {
+            held[v as usize] = true;
+            held[mesh.corners()[topology.next[h] as usize] as usize] = true;
+        }
+    }
+    held
+}
+
+/// Moves the vertices of `mesh` that are not `held` for good face shapes; the new points.
+///
+/// The result is within `budget` of the reference; without one, within
+/// [`SmoothOptions::budget`] times the distance of the start. If no limit can be kept anywhere,
+/// the points are those of the start. Cancelling gives what is reached so far, checked alike.
+/// O(iterations · n), parallel; independent of the number of threads.
+#[must_use]
+pub fn smooth(
+    mesh: &PolyMesh,
+    held: &[bool],
+    reference: &Reference,
+    (options, relax): (&SmoothOptions, &RelaxOptions),
+    budget: Option<Budget>,
+    watch: &dyn Watch,
+) -> (Vec<Point>, SmoothReport) {
+    let mut work = Work::new(mesh, held, reference, (options, relax), budget);
+    work.iterate(watch);
+    let (points, found) = work.mend();
+    let kernel = &work.region.kernel;
+    let report = SmoothReport {
+        iterations: kernel.iterations,
+        energy: kernel.energy,
+        motion: kernel.motion,
+        before: work.start.deviation,
+        after: found.deviation,
+        least_jacobian_before: work.start.least_jacobian,
+        least_jacobian_after: found.least_jacobian,
+        mended: work.mended,
+    };
+    (points, report)
+}
+
+struct Work<'a> {
+    options: &'a SmoothOptions,
+    mesh: PolyMesh,
+    original: &'a PolyMesh,
+    guard: Guard<'a>,
+    limits: Limits,
+    start: Finding,
+    region: Region,
+    setting: Setting,
+    mended: usize,
+}
+
+impl<'a> Work<'a> {
+    fn new(
+        mesh: &'a PolyMesh,
+        held: &[bool],
+        reference: &'a Reference,
+        (options, relax): (&'a SmoothOptions, &RelaxOptions),
+        budget: Option<Budget>,
+    ) -> Self {
+        let side = orientation(mesh, reference);
+        let relax = RelaxOptions { stress: options.stress, ..relax.clone() };
+        let samples = mesh.vertex_count().clamp(20_000, 200_000);
+        let places = watched(reference, samples);
+        let guard = Guard { reference, places, samples, sign: side.sign() };
+        let start = guard.check(mesh);
+        // What rounding alone does to a mesh that lies on its reference is not counted.
+        let slack = reference.diagonal() * 1e-6;
+        let scaled = |d: f64| d * options.budget + slack;
+        let budget = budget.unwrap_or(Budget {
+            hausdorff: scaled(start.deviation.hausdorff),
+            rms: scaled(start.deviation.rms),
+        });
+        let limits = Limits { budget, jacobian: options.least_jacobian.min(start.least_jacobian) };
+        let setting = Setting::new(&relax, side.sign(), true);
+        let mut region = Region::new();
+        region.begin(side);
+        for (&p, &held) in mesh.points().iter().zip(held) {
+            region.add_vertex(p, held, None);
+        }
+        mesh.faces().for_each(|f| region.add_face(f));
+        region.kernel.prepare();
+        region.kernel.find_normals(reference, &setting);
+        Self {
+            options,
+            mesh: mesh.clone(),
+            original: mesh,
+            guard,
+            limits,
+            start,
+            region,
+            setting,
+            mended: 0,
+        }
+    }
+
+    /// Iterates until vertices are still, looking for lost places in between.
+    fn iterate(&mut self, watch: &dyn Watch) {
+        let total = self.options.iterations;
+        let round = if self.options.anchor_every == 0 { total } else { self.options.anchor_every };
+        let places = watched(self.guard.reference, self.mesh.vertex_count());
+        let mut done = 0;
+        while done < total && !watch.cancelled() {
+            watch.progress(Phase::Smooth, done as usize, total as usize, None);
+            let count = round.min(total - done);
+            let kernel = &mut self.region.kernel;
+            kernel.run(self.guard.reference, &self.setting, (count, self.options.still_edges));
+            done += count;
+            if kernel.motion < self.options.still_edges {
+                break;
+            }
+            if done < total && self.options.anchor_every > 0 {
+                let points = kernel.vertices.iter().map(|v| v.point).collect();
+                self.mesh.set_points(points);
+                let far = self.options.anchor_share * self.limits.budget.hausdorff;
+                pull(kernel, &self.mesh, &places, far);
+            }
+        }
+        self.region.kernel.land(self.guard.reference, &self.setting);
+        self.region.kernel.fit(self.guard.reference, &self.setting, self.options.fit);
+    }
+
+    /// Checks the limits and undoes moves where they are broken until they are kept.
+    fn mend(&mut self) -> (Vec<Point>, Finding) {
+        let kernel = &self.region.kernel;
+        let smoothed: Vec<Point> = kernel.vertices.iter().map(|v| v.point).collect();
+        let mut mending = Mending::new(self.original.points().to_vec(), smoothed.clone());
+        self.mesh.set_points(smoothed);
+        let mut found = self.guard.check(&self.mesh);
+        let mut broken = found.broken(&self.start, &self.limits);
+        for _ in 0..self.options.mend_rounds {
+            if broken.is_empty() {
+                break;
+            }
+            mending.lower(&self.mesh, &broken);
+            let points = mending.blend(kernel, self.guard.reference, self.setting.sign);
+            self.mesh.set_points(points);
+            found = self.guard.check(&self.mesh);
+            broken = found.broken(&self.start, &self.limits);
+        }
+        if broken.is_empty() {
+            self.mended = mending.count();
+            return (self.mesh.points().to_vec(), found);
+        }
+        self.mended = self.original.vertex_count();
+        (self.original.points().to_vec(), self.start.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::{FeatureOptions, mesh_features, trial};
+    use crate::watch::Silent;
+
+    /// A ball as a cube of quads, drawn out along x to a spindle with thin horns.
+    fn spindle(n: u32) -> PolyMesh {
+        let mut mesh = trial::cube(n, 1.0, 0.0);
+        let horn = |p: &Point| {
+            let thin = 0.08 + 0.92 * (1.0 - p.x * p.x).max(0.0);
+            Point::new(p.x * 4.0, p.y * thin, p.z * thin)
+        };
+        let points = mesh.points().iter().map(horn).collect();
+        mesh.set_points(points);
+        mesh
+    }
+
+    /// Vertices moved by up to `size` in all directions.
+    fn shaken(mesh: &PolyMesh, size: f64) -> PolyMesh {
+        let wave = |v: usize, k: f64| (v as f64 * k).sin() * size;
+        let shake = |(v, p): (usize, &Point)| {
+            p + crate::mesh::Vector::new(wave(v, 12.9), wave(v, 78.2), wave(v, 37.7))
+        };
+        let mut shaken = mesh.clone();
+        shaken.set_points(mesh.points().iter().enumerate().map(shake).collect());
+        shaken
+    }
+
+    fn run(mesh: &PolyMesh, reference: &PolyMesh) -> (Vec<Point>, SmoothReport) {
+        let surface = Reference::new(reference).unwrap();
+        let held: Vec<bool> = (0..mesh.vertex_count()).map(|v| v % 97 == 0).collect();
+        let options = (&SmoothOptions::default(), &RelaxOptions::default());
+        smooth(mesh, &held, &surface, options, None, &Silent)
+    }
+
+    #[test]
+    fn horns_keep_their_tips_and_held_vertices_their_bits() {
+        let (mesh, fine) = (spindle(14), spindle(60));
+        let mesh = shaken(&mesh, 0.01);
+        let (points, report) = run(&mesh, &fine);
+        assert!(report.after.hausdorff <= report.before.hausdorff * 1.011, "{report:?}");
+        assert!(report.after.rms <= report.before.rms * 1.011, "{report:?}");
+        assert!(report.mended < mesh.vertex_count(), "not all was undone: {report:?}");
+        for v in (0..points.len()).step_by(97) {
+            assert_eq!(points[v], mesh.points()[v]);
+        }
+    }
+
+    #[test]
+    fn the_result_does_not_depend_on_threads() {
+        let (mesh, fine) = (shaken(&spindle(10), 0.02), spindle(30));
+        let with = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| run(&mesh, &fine))
+        };
+        let one = with(1);
+        assert_eq!(one, with(2));
+        assert_eq!(one, with(8));
+    }
+
+    #[test]
+    fn an_explicit_budget_is_kept_or_nothing_moves() {
+        let (mesh, fine) = (shaken(&spindle(10), 0.02), spindle(30));
+        let surface = Reference::new(&fine).unwrap();
+        let held = vec![false; mesh.vertex_count()];
+        let options = (&SmoothOptions::default(), &RelaxOptions::default());
+        let none = Budget { hausdorff: 0.0, rms: 0.0 };
+        let (points, _) = smooth(&mesh, &held, &surface, options, Some(none), &Silent);
+        assert_eq!(points, mesh.points());
+    }
+
+    #[test]
+    #[ignore = "needs data"]
+    #[allow(clippy::print_stderr)]
+    fn smooth_data() {
+        let only = std::env::var("ONLY").unwrap_or_default();
+        let out = std::env::var_os("OUT").map(std::path::PathBuf::from);
+        for name in trial::names().iter().filter(|n| n.contains(&only)) {
+            let Some((mesh, reference)) = trial::pair(name) else { continue };
+            let surface = Reference::new(&reference).unwrap();
+            let topology = Topology::new(&mesh);
+            let features = mesh_features(&mesh, &topology, &surface, &FeatureOptions::default());
+            let held = held_vertices(&mesh, &topology, &features);
+            let options = (&SmoothOptions::default(), &RelaxOptions::default());
+            let start = std::time::Instant::now();
+            let (points, report) = smooth(&mesh, &held, &surface, options, None, &Silent);
+            let seconds = start.elapsed().as_secs_f64();
+            let d = 100.0 / surface.diagonal();
+            eprintln!(
+                "{name:18} {seconds:6.2}s it {:3} mot {:.1e} H {:.4}->{:.4} R {:.5}->{:.5} SJ {:.3}->{:.3} mended {}",
+                report.iterations,
+                report.motion,
+                report.before.hausdorff * d,
+                report.after.hausdorff * d,
+                report.before.rms * d,
+                report.after.rms * d,
+                report.least_jacobian_before,
+                report.least_jacobian_after,
+                report.mended,
+            );
+            let mut mesh = mesh.clone();
+            mesh.set_points(points);
+            if let Some(out) = &out {
+                trial::write(&mesh, &out.join(format!("{name}.obj")));
+            }
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! What smoothing must not do: leave the surface, or spoil a quad; and undoing it where it did.
+//!
+//! The distance to the reference is measured both ways on fixed samples. Where a sample is
+//! farther than the budget, or a quad is worse than allowed, the vertices around go part of the
+//! way back to where they were; after a few rounds they are back altogether.
+
+use super::kernel::Kernel;
+use crate::mesh::{Point, PolyMesh, Vector};
+use crate::surface::{Deviation, Hit, Reference};
+
+/// How far the mesh may be from the reference, both ways, in units of the file.
+pub type Budget = Deviation;
+
+/// A quad that was sound must keep at least this scaled Jacobian whatever the limit is.
+const SOUND: f64 = 0.02;
+
+/// The limits, and the samples that they are checked on.
+pub(super) struct Guard<'a> {
+    pub(super) reference: &'a Reference,
+    pub(super) places: Vec<Point>,
+    pub(super) samples: usize,
+    /// 1 if the mesh is oriented like the reference, else −1.
+    pub(super) sign: f64,
+}
+
+/// The state of a mesh, face by face.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Finding {
+    pub(super) deviation: Deviation,
+    pub(super) least_jacobian: f64,
+    /// Scaled Jacobian of each face; 1 unless it is a quad.
+    jacobian: Vec<f64>,
+    /// Whether the face is turned over against the reference.
+    flipped: Vec<bool>,
+    /// Largest distance of a sample at the face, either way.
+    far: Vec<f64>,
+    /// Part of each face in the mean squares of both ways together.
+    load: Vec<f64>,
+}
+
+/// What is allowed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Limits {
+    pub(super) budget: Budget,
+    /// Least scaled Jacobian.
+    pub(super) jacobian: f64,
+}
+
+impl Guard<'_> {
+    /// Measures `mesh`. O(n log n), parallel.
+    pub(super) fn check(&self, mesh: &PolyMesh) -> Finding {
+        let n = mesh.face_count();
+        let jacobian: Vec<f64> =
+            mesh.faces().map(|face| scaled_jacobian(mesh.points(), face)).collect();
+        let mut found = Finding {
+            deviation: Deviation::default(),
+            least_jacobian: jacobian.iter().copied().fold(1.0, f64::min),
+            jacobian,
+            flipped: vec![false; n],
+            far: vec![0.0; n],
+            load: vec![0.0; n],
+        };
+        if let Ok(surface) = Reference::plain(mesh) {
+            let away = self.away(&surface, &mut found);
+            let back = self.back(&surface, &mut found);
+            self.centres(mesh, &mut found);
+            let hausdorff = found.far.iter().copied().fold(0.0, f64::max);
+            found.deviation = Deviation { hausdorff, rms: away.max(back).sqrt() };
+        }
+        found
+    }
+
+    /// Mean square distance of samples of the mesh to the reference.
+    fn away(&self, surface: &Reference, found: &mut Finding) -> f64 {
+        let own = surface.sample_places(self.samples);
+        let queries: Vec<Point> = own.iter().map(|s| s.1).collect();
+        let hits = self.reference.closest_many(&queries);
+        let faces = own.iter().map(|s| surface.faces()[s.0 as usize]);
+        found.note(faces.zip(hits.iter().map(|h| h.distance)), own.len())
+    }
+
+    /// Mean square distance of samples of the reference to the mesh; its vertices count for
+    /// the largest distance only.
+    fn back(&self, surface: &Reference, found: &mut Finding) -> f64 {
+        let hits = surface.closest_many(&self.places);
+        let at = |h: &Hit| (surface.faces()[h.triangle as usize], h.distance);
+        let count = self.samples.min(hits.len());
+        found.note(hits[count..].iter().map(at), 0);
+        found.note(hits[..count].iter().map(at), count)
+    }
+
+    /// Distances and sides of the centres of the faces.
+    fn centres(&self, mesh: &PolyMesh, found: &mut Finding) {
+        let centres: Vec<Point> = (0..mesh.face_count()).map(|f| mesh.centre(f)).collect();
+        let hits = self.reference.closest_many(&centres);
+        found.note((0..).zip(hits.iter().map(|h| h.distance)), 0);
+        for (f, hit) in hits.iter().enumerate() {
+            let normal = self.reference.normal(hit.triangle) * self.sign;
+            found.flipped[f] = mesh.area_vector(f).dot(&normal) < 0.0;
+        }
+    }
+}
+
+impl Finding {
+    /// Notes distances at faces; their mean square over `count` samples, if there are any.
+    fn note(&mut self, distances: impl Iterator<Item = (u32, f64)>, count: usize) -> f64 {
+        let mut sum = 0.0;
+        let share = if count > 0 { 1.0 / count as f64 } else { 0.0 };
+        for (f, d) in distances {
+            self.far[f as usize] = self.far[f as usize].max(d);
+            self.load[f as usize] += d * d * share;
+            sum += d * d * share;
+        }
+        sum
+    }
+
+    /// Faces that break a limit, ascending; if the mean square does, those that have added most
+    /// to it since `start`.
+    pub(super) fn broken(&self, start: &Self, limits: &Limits) -> Vec<u32> {
+        let sound =
+            |f: usize| if start.jacobian[f] > 0.0 { start.jacobian[f].min(SOUND) } else { -1.0 };
+        let bad = |f: usize| {
+            self.jacobian[f] < limits.jacobian.max(sound(f))
+                || self.flipped[f] && !start.flipped[f]
+                || self.far[f] > limits.budget.hausdorff
+        };
+        let mut broken: Vec<u32> =
+            (0..self.far.len()).filter(|&f| bad(f)).map(|f| f as u32).collect();
+        if self.deviation.rms > limits.budget.rms {
+            broken.extend(self.heaviest(start, limits.budget.rms));
+            broken.sort_unstable();
+            broken.dedup();
+        }
+        broken
+    }
+
+    /// The faces whose load has grown most, as many as make up for what exceeds `rms`.
+    fn heaviest(&self, start: &Self, rms: f64) -> Vec<u32> {
+        let grown = |f: u32| self.load[f as usize] - start.load[f as usize];
+        let mut faces: Vec<u32> = (0..self.load.len() as u32).filter(|&f| grown(f) > 0.0).collect();
+        faces.sort_by(|&a, &b| grown(b).total_cmp(&grown(a)).then(a.cmp(&b)));
+        // Twice the excess: what is lowered goes half of the way back.
+        let mut left = 2.0 * (self.deviation.rms.powi(2) - 0.98 * rms * rms);
+        faces
+            .into_iter()
+            .take_while(|&f| {
+                let more = left > 0.0;
+                left -= grown(f);
+                more
+            })
+            .collect()
+    }
+}
+
+/// How much of its move each vertex keeps, lowered where limits are broken.
+pub(super) struct Mending {
+    start: Vec<Point>,
+    smoothed: Vec<Point>,
+    keep: Vec<f64>,
+}
+
+impl Mending {
+    pub(super) fn new(start: Vec<Point>, smoothed: Vec<Point>) -> Self {
+        Self { keep: vec![1.0; start.len()], start, smoothed }
+    }
+
+    /// Lets the corners of `broken` faces and, less, three rings around them keep less.
+    pub(super) fn lower(&mut self, mesh: &PolyMesh, broken: &[u32]) {
+        let mut take = vec![0.0f64; self.keep.len()];
+        for &v in broken.iter().flat_map(|&f| mesh.face(f as usize)) {
+            take[v as usize] = 0.5;
+        }
+        for _ in 0..3 {
+            let before = take.clone();
+            for face in mesh.faces() {
+                let most = face.iter().map(|&v| before[v as usize]).fold(0.0, f64::max) * 0.6;
+                for &v in face {
+                    take[v as usize] = take[v as usize].max(most);
+                }
+            }
+        }
+        for (keep, take) in self.keep.iter_mut().zip(take) {
+            *keep = if *keep - take < 0.05 { 0.0 } else { *keep - take };
+        }
+    }
+
+    /// How many vertices do not keep their whole move.
+    pub(super) fn count(&self) -> usize {
+        self.keep.iter().filter(|&&k| k < 1.0).count()
+    }
+
+    /// The blended places, projected where they are neither old nor new.
+    pub(super) fn blend(&self, kernel: &Kernel, reference: &Reference, sign: f64) -> Vec<Point> {
+        let place = |v: usize| {
+            let keep = self.keep[v];
+            let vertex = &kernel.vertices[v];
+            if keep <= 0.0 || vertex.held {
+                return self.start[v];
+            }
+            if keep >= 1.0 {
+                return self.smoothed[v];
+            }
+            let between = Point::from(self.start[v].coords.lerp(&self.smoothed[v].coords, keep));
+            let reach = (self.smoothed[v] - self.start[v]).norm();
+            let normal: Vector = vertex.normal * sign;
+            reference.closest_facing(&between, &normal, vertex.last, reach).point
+        };
+        (0..self.keep.len()).map(place).collect()
+    }
+}
+
+/// Least scaled Jacobian of the corners of a quad: the sine of the angle there, negative where
+/// it turns against the quad's area vector. 1 for other polygons.
+pub(super) fn scaled_jacobian(points: &[Point], face: &[u32]) -> f64 {
+    let &[a, b, c, d] = face else { return 1.0 };
+    let p = [a, b, c, d].map(|v| points[v as usize]);
+    let Some(normal) = (p[2] - p[0]).cross(&(p[3] - p[1])).try_normalize(0.0) else { return -1.0 };
+    let at = |k: usize| {
+        let (u, v) = (p[(k + 1) % 4] - p[k], p[(k + 3) % 4] - p[k]);
+        let area = u.norm() * v.norm();
+        if area > 0.0 { u.cross(&v).dot(&normal) / area } else { -1.0 }
+    };
+    (0..4).map(at).fold(f64::INFINITY, f64::min)
+}
