@@ -24,6 +24,8 @@ pub struct Knob {
 pub trait Section: Serialize + for<'a> Deserialize<'a> + Default {
     /// Name of the section in the configuration file.
     const NAME: &'static str;
+    /// What it is about, in words.
+    const ABOUT: &'static str;
     /// Its knobs, in the order of declaration.
     const KNOBS: &'static [Knob];
 }
@@ -54,6 +56,7 @@ macro_rules! knobs {
 
         impl $crate::knobs::Section for $name {
             const NAME: &'static str = $section;
+            const ABOUT: &'static str = concat!($($about),*);
             const KNOBS: &'static [$crate::knobs::Knob] = &[$($crate::knobs::Knob {
                 name: stringify!($field), min: $min, max: $max, unit: $unit,
                 meaning: concat!($($doc),+),

@@ -6,6 +6,7 @@
 //! Quad-Dominant Meshes*, 2013). Data flows one way:
 //! read → mesh → lift → plan → edit → lower → smooth → measure → write.
 
+pub mod config;
 pub mod io;
 pub mod knobs;
 pub mod mesh;
