@@ -14,6 +14,7 @@ pub mod metrics;
 pub mod moves;
 pub mod ops;
 pub mod patch;
+pub mod pipeline;
 pub mod planner;
 pub mod smooth;
 pub mod sqrtcc;

@@ -64,6 +64,8 @@ macro_rules! sections {
 
 sections! {
     features: crate::surface::FeatureOptions,
+    relax: crate::smooth::RelaxOptions,
+    smooth: crate::smooth::SmoothOptions,
     measure: crate::metrics::MeasureOptions,
 }
 

@@ -156,6 +156,7 @@ impl PolyMesh {
     }
 
     /// The faces in order, each as its vertices.
+    #[must_use]
     pub fn faces(&self) -> impl ExactSizeIterator<Item = &[u32]> + '_ {
         (0..self.face_count()).map(|f| self.face(f))
     }

@@ -105,11 +105,11 @@ impl Topology {
             }
         }
         self.fan = vec![NONE; corners.len()];
-        for c in 0..corners.len() {
+        for (c, &vertex) in corners.iter().enumerate() {
             let root = sets.root(c);
             if self.fan[root] == NONE {
                 self.fan[root] = self.fan_vertex.len() as u32;
-                self.fan_vertex.push(corners[c]);
+                self.fan_vertex.push(vertex);
                 self.fan_corners.push(0);
             }
             self.fan[c] = self.fan[root];

@@ -364,3 +364,31 @@ fn the_table_lines_up_and_leaves_out_what_is_not_there() {
         table(&[("cube", &metrics(cube()))]).lines().next().is_some_and(|l| l.ends_with("cube"))
     );
 }
+
+#[test]
+fn huge_and_tiny_coordinates_do_no_harm() {
+    for scale in [1e300, 1e160, 1e-160, 1e-300] {
+        let (points, faces) = t_junction_grid();
+        let scaled = mesh((points.iter().map(|p| p.map(|x| x * scale)).collect(), faces));
+        let m = measure(&scaled, None).expect("it has faces");
+        assert_eq!(m.summary.irregular_elements, 2);
+        let options = MeasureOptions { samples: 1000, ..Default::default() };
+        if let Ok(target) = Target::new(&scaled, &options) {
+            // No number is promised, only that there is an answer.
+            let _ = measure(&scaled, Some(&target));
+        }
+    }
+}
+
+#[test]
+fn numbers_do_not_depend_on_the_number_of_threads() {
+    let target =
+        Target::new(&mesh(cube()), &MeasureOptions { samples: 3000, ..Default::default() });
+    let (target, ball) = (target.expect("a cube is a surface"), mesh(icosahedron()));
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        pool.install(|| measure(&ball, Some(&target)).expect("it has faces"))
+    };
+    let one = with(1);
+    assert!(one == with(2) && one == with(8));
+}

@@ -182,8 +182,8 @@ impl Worker {
     /// Makes an edit, has it judged, and undoes it.
     fn attempt(&mut self, seed: Vertex, (gain, cost, edit): Candidate, sweeps: u32, task: &Task, outcome: &mut Outcome) -> Option<Proposal> {
         let mark = self.mesh.mark();
-        let quads = self.mesh.quads_alive();
-        edit.run(&mut self.mesh, self.mesh.quad_ids()).ok()?;
+        let (quads, planned) = (self.mesh.quads_alive(), self.mesh.quad_ids());
+        edit.run(&mut self.mesh, planned).ok()?;
         let touched = self.mesh.touched_since(mark);
         let core = self.with_neighbours(&touched);
         let quads_added = self.mesh.quads_alive() - quads;
