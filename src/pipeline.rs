@@ -1,70 +1,154 @@
-//! The whole way: mesh → lift → plan → edit → lower → smooth.
+//! The whole way: mend → lift → plan and edit → lower → measure.
 
-use crate::mesh::{NONE, PolyMesh, Topology};
-use crate::planner::cost::CostOptions;
-use crate::planner::gate::{self, GateOptions};
-use crate::planner::schedule::Schedule;
-use crate::planner::worker::{Stage, Task};
-use crate::planner::PlanOptions;
-use crate::smooth::{self, RelaxOptions, SmoothOptions};
-use crate::sqrtcc::{QuadMesh, lift, lower};
-use crate::surface::{self, FeatureOptions, Reference, mesh_features};
-use crate::watch::Watch;
+use crate::config::Config;
+use crate::mesh::{Flaw, MendError, MendPolicy, MendReport, MeshError, PolyMesh, Topology, check, mend};
+use crate::metrics::{Metrics, MetricsError, Target, measure};
+use crate::planner::automation::Automation;
+use crate::planner::schedule::{EditRecord, RoundRecord, Schedule};
+use crate::smooth;
+use crate::sqrtcc::{LiftError, QuadMesh, lift, lower};
+use crate::surface::{self, Deviation, Reference, SurfaceError, mesh_features};
+use crate::watch::{Phase, Watch};
+use serde::Serialize;
+use thiserror::Error;
 
-/// x
-#[derive(Debug, Clone, Default)]
-pub struct Options {
-    /// x
-    pub features: FeatureOptions,
-    /// x
-    pub plan: PlanOptions,
-    /// x
-    pub cost: CostOptions,
-    /// x
-    pub gate: GateOptions,
-    /// x
-    pub relax: RelaxOptions,
-    /// x
-    pub smooth: SmoothOptions,
+/// A mesh farther than this from its reference in the mean, relative to the diagonal of the
+/// reference, was not made from it.
+const ELSEWHERE_REL: f64 = 0.05;
+
+/// Samples each way for the distance that cleaning must keep.
+const BUDGET_SAMPLES: usize = 50_000;
+
+/// Why a mesh was not cleaned.
+#[derive(Debug, Error)]
+pub enum CleanError {
+    /// The mesh has defects that cannot be mended, or must not be.
+    #[error("the mesh cannot be edited: {0}")]
+    Mend(#[from] MendError),
+    /// The reference has no surface.
+    #[error("the reference cannot be used: {0}")]
+    Reference(#[from] SurfaceError),
+    /// The mesh does not lie on the reference.
+    #[error(
+        "the mesh is {rms_rel:.3} bounding-box diagonals from the reference in the mean; give the \
+         surface that it was made from, in the same position and scale"
+    )]
+    Elsewhere {
+        /// Root mean square distance, relative to the diagonal of the reference.
+        rms_rel: f64,
+    },
+    /// The mesh cannot be lifted; mending should have seen to that.
+    #[error(transparent)]
+    Lift(#[from] LiftError),
+    /// The mesh is too large.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The mesh cannot be measured.
+    #[error(transparent)]
+    Metrics(#[from] MetricsError),
+    /// The result is not clean: a bug of this program. Nothing is returned.
+    #[error("the result has a flaw ({0}); please report this with the input")]
+    Flawed(Flaw),
 }
 
-/// x
-pub fn edit(mesh: &PolyMesh, reference: &Reference, options: &Options, watch: &dyn Watch) -> (PolyMesh, Schedule) {
-    let topology = Topology::new(mesh);
-    let features = mesh_features(mesh, &topology, reference, &options.features);
-    let orientation = smooth::orientation(mesh, reference);
-    let before = surface::deviation(&Reference::new(mesh).unwrap(), reference, 20000);
-    let mut q = lift(mesh, &features).unwrap();
-    let mut schedule = Schedule::new(&q);
-    let t0 = std::time::Instant::now();
-    if std::env::var("QM_V").is_ok() { eprintln!("features {} dev {:?} E {}", features.count_ones(..)/2, before, q.total_irregularity()); }
-    smooth_q(&mut q, mesh, reference, options, options.plan.smooth_between, before, watch);
-    for i in 0..options.plan.stages {
-        for stage in [Stage::Moves, Stage::Refills { faces: options.plan.patch_faces(i) }] {
-            schedule.forget_failures();
-            for _ in 0..options.plan.rounds {
-                let points: Vec<_> = (0..q.vertex_ids()).map(|v| q.position(v)).collect();
-                let hits = reference.closest_many(&points);
-                let near: Vec<u32> = hits.iter().enumerate().map(|(v, h)| if q.is_alive(v as u32) && !q.is_face(v as u32) { h.triangle } else { NONE }).collect();
-                let gate = gate::Setting { reference, orientation, relax: &options.relax, options: &options.gate, distance: options.gate.distance * before.hausdorff, near: &near };
-                let task = Task { stage, lambda: options.plan.lambda(i), plan: &options.plan, costs: &options.cost, gate };
-                let made = schedule.round(&mut q, &task, watch);
-                if std::env::var("QM_V").is_ok() { let r = schedule.rounds.last().unwrap(); eprintln!("  {:.2}s stage {i} {stage:?} λ {:.0} seeds {} proposed {} made {} E {} down {:?} quads {}", t0.elapsed().as_secs_f64(), r.lambda, r.seeds, r.proposed, r.made, r.irregularity, r.turned_down, q.quads_alive()); }
-                if made == 0 { break; }
-            }
-        }
-        let last = i + 1 == options.plan.stages;
-        smooth_q(&mut q, mesh, reference, options, if last { options.smooth.iterations } else { options.plan.smooth_between }, before, watch);
-        if std::env::var("QM_V").is_ok() { eprintln!("  {:.2}s smoothed", t0.elapsed().as_secs_f64()); }
-    }
-    (lower(&q, mesh.group_names()).unwrap().mesh, schedule)
+/// What was done to a mesh.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report {
+    /// Defects that were mended before anything else.
+    pub mends: MendReport,
+    /// Edges of the mended mesh that were held as sharp features.
+    pub feature_edges: usize,
+    /// The mesh as it was read.
+    pub before: Metrics,
+    /// The mesh that is returned.
+    pub after: Metrics,
+    /// The edits, in the order in which they were made.
+    pub edits: Vec<EditRecord>,
+    /// The rounds of planning.
+    pub rounds: Vec<RoundRecord>,
 }
 
-fn smooth_q(q: &mut QuadMesh, mesh: &PolyMesh, reference: &Reference, options: &Options, iterations: u32, budget: surface::Deviation, watch: &dyn Watch) {
-    let lowered = lower(q, mesh.group_names()).unwrap();
-    let smoothing = SmoothOptions { iterations, ..options.smooth.clone() };
-    let (points, report) = smooth::smooth(&lowered.mesh, &lowered.held, reference, (&smoothing, &options.relax), Some(budget), watch);
-    if std::env::var("QM_V").is_ok() { eprintln!("  smooth: {report:?}"); }
-    for (&v, p) in lowered.vertex_ids.iter().zip(points) { q.set_position(v, p); }
+/// A cleaned mesh and how it came about.
+#[derive(Debug, Clone)]
+pub struct Cleaned {
+    /// The mesh: manifold, consistently oriented, without doublets.
+    pub mesh: PolyMesh,
+    /// What was done.
+    pub report: Report,
+}
+
+/// Cleans `mesh`, which may be any soup, on the surface of `reference` (its own if there is none).
+///
+/// Boundaries and sharp features keep their vertices; χ, components and boundary loops stay as
+/// they are after mending. The result depends on the arguments only, not on threads.
+pub fn clean(
+    mesh: PolyMesh,
+    reference: Option<PolyMesh>,
+    policy: MendPolicy,
+    config: &Config,
+    watch: &dyn Watch,
+) -> Result<Cleaned, CleanError> {
+    let raw = mesh.clone();
+    let (mesh, mends) = mend(mesh, policy)?;
+    let surface = reference.as_ref().unwrap_or(&mesh);
+    watch.progress(Phase::Measure, 0, 2, None);
+    let target = Target::new(surface, &config.measure)?;
+    let before = measure(&raw, Some(&target))?;
+    let (mut q, feature_edges, schedule) = edit(&mesh, surface, config, watch)?;
     q.commit();
+    let result = lower(&q, mesh.group_names())?.mesh;
+    check(&result).map_err(CleanError::Flawed)?;
+    watch.progress(Phase::Measure, 1, 2, None);
+    let after = measure(&result, Some(&target))?;
+    let Schedule { edits, rounds, .. } = schedule;
+    Ok(Cleaned { mesh: result, report: Report { mends, feature_edges, before, after, edits, rounds } })
+}
+
+/// The edits that [`clean`] would make, without the result.
+pub fn plan(
+    mesh: PolyMesh,
+    reference: Option<PolyMesh>,
+    policy: MendPolicy,
+    config: &Config,
+    watch: &dyn Watch,
+) -> Result<Vec<EditRecord>, CleanError> {
+    let (mesh, _) = mend(mesh, policy)?;
+    let (_, _, schedule) = edit(&mesh, reference.as_ref().unwrap_or(&mesh), config, watch)?;
+    Ok(schedule.edits)
+}
+
+/// Lifts, plans, edits and smooths; also the number of feature edges.
+fn edit(
+    mesh: &PolyMesh,
+    surface: &PolyMesh,
+    config: &Config,
+    watch: &dyn Watch,
+) -> Result<(QuadMesh, usize, Schedule), CleanError> {
+    watch.progress(Phase::Reference, 0, 1, None);
+    let reference = Reference::new(surface)?;
+    let budget = distance(mesh, &reference)?;
+    let features = mesh_features(mesh, &Topology::new(mesh), &reference, &config.features);
+    let automation = Automation {
+        reference: &reference,
+        orientation: smooth::orientation(mesh, &reference),
+        budget,
+        plan: &config.plan,
+        costs: &config.cost,
+        gate: &config.gate,
+        relax: &config.relax,
+        smooth: &config.smooth,
+    };
+    let mut q = lift(mesh, &features)?;
+    let schedule = automation.run(&mut q, watch)?;
+    Ok((q, features.count_ones(..) / 2, schedule))
+}
+
+/// The distance to the reference that cleaning must keep.
+fn distance(mesh: &PolyMesh, reference: &Reference) -> Result<Deviation, CleanError> {
+    let distance = surface::deviation(&Reference::new(mesh)?, reference, BUDGET_SAMPLES);
+    let rms_rel = distance.rms / reference.diagonal();
+    if rms_rel > ELSEWHERE_REL {
+        return Err(CleanError::Elsewhere { rms_rel });
+    }
+    Ok(distance)
 }

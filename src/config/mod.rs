@@ -64,6 +64,9 @@ macro_rules! sections {
 
 sections! {
     features: crate::surface::FeatureOptions,
+    plan: crate::planner::PlanOptions,
+    cost: crate::planner::cost::CostOptions,
+    gate: crate::planner::gate::GateOptions,
     relax: crate::smooth::RelaxOptions,
     smooth: crate::smooth::SmoothOptions,
     measure: crate::metrics::MeasureOptions,

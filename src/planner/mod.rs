@@ -6,6 +6,7 @@
 //! [`gate`]; then everything is smoothed. Source: Peng & Wonka 2013, section 4, which leaves the
 //! automation as future work.
 
+pub mod automation;
 pub mod clusters;
 pub mod cost;
 pub mod edit;
