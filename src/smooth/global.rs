@@ -5,7 +5,7 @@ use fixedbitset::FixedBitSet;
 use super::anchors::{pull, watched};
 use super::guard::{Budget, Finding, Guard, Limits, Mending};
 use super::kernel::Setting;
-use super::region::{Region, orientation};
+use super::region::{Orientation, Region, orientation};
 use super::{RelaxOptions, SmoothOptions};
 use crate::mesh::{NONE, Point, PolyMesh, Topology};
 use crate::surface::{Deviation, Reference};
@@ -51,6 +51,9 @@ pub fn held_vertices(mesh: &PolyMesh, topology: &Topology, features: &FixedBitSe
 /// [`SmoothOptions::budget`] times the distance of the start. If no limit can be kept anywhere,
 /// the points are those of the start. Cancelling gives what is reached so far, checked alike.
 /// O(iterations · n), parallel; independent of the number of threads.
+///
+/// # Panics
+/// If there is not one entry of `held` for each vertex: that is a bug of the caller.
 #[must_use]
 pub fn smooth(
     mesh: &PolyMesh,
@@ -60,6 +63,7 @@ pub fn smooth(
     budget: Option<Budget>,
     watch: &dyn Watch,
 ) -> (Vec<Point>, SmoothReport) {
+    assert_eq!(held.len(), mesh.vertex_count(), "one entry for each vertex");
     let mut work = Work::new(mesh, held, reference, (options, relax), budget);
     work.iterate(watch);
     let (points, found) = work.mend();
@@ -77,6 +81,34 @@ pub fn smooth(
     (points, report)
 }
 
+/// The limits that follow from the start where none are given.
+fn limits(
+    start: &Finding,
+    options: &SmoothOptions,
+    budget: Option<Budget>,
+    diagonal: f64,
+) -> Limits {
+    // What rounding alone does to a mesh that lies on its reference is not counted.
+    let scaled = |d: f64| d * options.budget + diagonal * 1e-6;
+    let budget = budget.unwrap_or(Budget {
+        hausdorff: scaled(start.deviation.hausdorff),
+        rms: scaled(start.deviation.rms),
+    });
+    Limits { budget, jacobian: options.least_jacobian.min(start.least_jacobian) }
+}
+
+/// The whole mesh as a region.
+fn filled(mesh: &PolyMesh, held: &[bool], side: Orientation) -> Region {
+    let mut region = Region::new();
+    region.begin(side);
+    for (&p, &held) in mesh.points().iter().zip(held) {
+        region.add_vertex(p, held, None);
+    }
+    mesh.faces().for_each(|f| region.add_face(f));
+    region
+}
+
+/// A mesh while it is smoothed.
 struct Work<'a> {
     options: &'a SmoothOptions,
     mesh: PolyMesh,
@@ -103,21 +135,9 @@ impl<'a> Work<'a> {
         let places = watched(reference, samples);
         let guard = Guard { reference, places, samples, sign: side.sign() };
         let start = guard.check(mesh);
-        // What rounding alone does to a mesh that lies on its reference is not counted.
-        let slack = reference.diagonal() * 1e-6;
-        let scaled = |d: f64| d * options.budget + slack;
-        let budget = budget.unwrap_or(Budget {
-            hausdorff: scaled(start.deviation.hausdorff),
-            rms: scaled(start.deviation.rms),
-        });
-        let limits = Limits { budget, jacobian: options.least_jacobian.min(start.least_jacobian) };
+        let limits = limits(&start, options, budget, reference.diagonal());
         let setting = Setting::new(&relax, side.sign(), true);
-        let mut region = Region::new();
-        region.begin(side);
-        for (&p, &held) in mesh.points().iter().zip(held) {
-            region.add_vertex(p, held, None);
-        }
-        mesh.faces().for_each(|f| region.add_face(f));
+        let mut region = filled(mesh, held, side);
         region.kernel.prepare();
         region.kernel.find_normals(reference, &setting);
         Self {
@@ -270,7 +290,10 @@ mod tests {
             let topology = Topology::new(&mesh);
             let features = mesh_features(&mesh, &topology, &surface, &FeatureOptions::default());
             let held = held_vertices(&mesh, &topology, &features);
-            let options = (&SmoothOptions::default(), &RelaxOptions::default());
+            let set = |key: &str| std::env::var(key).unwrap_or_else(|_| "{}".into());
+            let smoothing: SmoothOptions = serde_json::from_str(&set("SMOOTH")).unwrap();
+            let relaxing: RelaxOptions = serde_json::from_str(&set("RELAX")).unwrap();
+            let options = (&smoothing, &relaxing);
             let start = std::time::Instant::now();
             let (points, report) = smooth(&mesh, &held, &surface, options, None, &Silent);
             let seconds = start.elapsed().as_secs_f64();

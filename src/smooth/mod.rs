@@ -29,7 +29,7 @@ knobs! {
         /// How much more a face weighs the worse its shape is.
         stress: f64 = 1.0, in 0.0..=100.0, "factor";
         /// Angle by which the diagonals of a quad may differ from 90 degrees: bounds the aspect.
-        slant_deg: f64 = 20.0, in 0.0..=60.0, "degrees";
+        slant_deg: f64 = 12.0, in 0.0..=60.0, "degrees";
         /// Exponent of the pull of face sizes to their mean; 0 keeps the grading.
         even: f64 = 0.03, in 0.0..=1.0, "exponent";
         /// Corner angle of a vertex of three edges from which it counts as a T-junction.
@@ -49,7 +49,7 @@ knobs! {
         /// Most iterations.
         iterations: u32 = 200, in 0.0..=5000.0, "count";
         /// How much more a face weighs the worse its shape is.
-        stress: f64 = 3.0, in 0.0..=100.0, "factor";
+        stress: f64 = 2.0, in 0.0..=100.0, "factor";
         /// Stop when vertices move less than this, in the root mean square.
         still_edges: f64 = 2e-4, in 0.0..=0.1, "edges";
         /// Places the mesh has left are looked for in every so many iterations; 0 is never.
