@@ -75,11 +75,10 @@ impl Clean {
         let config = self.settings.load()?;
         let progress = self.running.start()?;
         progress.progress(Phase::Read, 0, 1, None);
-        let mesh = self.running.read(&self.input)?.mesh;
-        let reference =
-            self.reference.as_deref().map(|path| self.running.read(path)).transpose()?;
+        let mesh = progress.read(&self.input)?;
+        let reference = self.reference.as_deref().map(|path| progress.read(path)).transpose()?;
         let policy = if self.strict { MendPolicy::Strict } else { MendPolicy::Mend };
-        let cleaned = clean(mesh, reference.map(|r| r.mesh), policy, &config, &progress)
+        let cleaned = clean(mesh, reference, policy, &config, &progress)
             .map_err(|e| Failure::of_file(&paths::shown(&self.input), e))?;
         progress.progress(Phase::Write, 0, 1, None);
         io::write(&self.output, &cleaned.mesh)?;
@@ -104,7 +103,8 @@ impl Clean {
         let outputs: Vec<&Path> =
             std::iter::once(self.output.as_path()).chain(self.json.as_deref()).collect();
         paths::keep_apart(&inputs, &outputs, self.force)?;
-        Ok(io::check_output(&self.output)?)
+        io::check_output(&self.output)?;
+        Ok(self.json.as_deref().map_or(Ok(()), io::check_place)?)
     }
 
     fn tell(&self, report: &Report) -> Result<(), Failure> {

@@ -38,14 +38,14 @@ impl Measuring {
         let options = self.settings.load()?.measure;
         let progress = self.running.start()?;
         let target = self.reference.as_deref().map(|path| {
-            let mesh = self.running.read(path)?.mesh;
+            let mesh = progress.read(path)?;
             Target::new(&mesh, &options).map_err(|e| Failure::of_file(&paths::shown(path), e))
         });
         let target = target.transpose()?;
         let mut all = Vec::new();
         for (i, path) in files.iter().map(AsRef::as_ref).enumerate() {
             progress.progress(Phase::Measure, i, files.len(), None);
-            let mesh = self.running.read(path)?.mesh;
+            let mesh = progress.read(path)?;
             let measured = measure(&mesh, target.as_ref());
             all.push(measured.map_err(|e| Failure::of_file(&paths::shown(path), e))?);
         }

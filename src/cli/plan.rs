@@ -57,11 +57,10 @@ impl Plan {
         let config = self.settings.load()?;
         let progress = self.running.start()?;
         progress.progress(Phase::Read, 0, 1, None);
-        let mesh = self.running.read(&self.input)?.mesh;
-        let reference =
-            self.reference.as_deref().map(|path| self.running.read(path)).transpose()?;
+        let mesh = progress.read(&self.input)?;
+        let reference = self.reference.as_deref().map(|path| progress.read(path)).transpose()?;
         let policy = if self.strict { MendPolicy::Strict } else { MendPolicy::Mend };
-        let edits = plan(mesh, reference.map(|r| r.mesh), policy, &config, &progress)
+        let edits = plan(mesh, reference, policy, &config, &progress)
             .map_err(|e| Failure::of_file(&paths::shown(&self.input), e))?;
         progress.finish();
         output::data(&if self.json { output::json(&edits)? } else { table(&edits) })?;

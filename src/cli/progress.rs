@@ -1,12 +1,17 @@
 //! Progress on standard error: a bar on a terminal, a line every two seconds elsewhere.
 
+use std::collections::BTreeMap;
 use std::io::{IsTerminal, stderr};
+use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
+use quadmend::io;
+use quadmend::mesh::PolyMesh;
 use quadmend::watch::{Phase, Watch};
 
+use super::failure::Failure;
 use super::output;
 
 /// Time between two lines where there is no terminal.
@@ -30,8 +35,22 @@ enum Show {
 #[derive(Debug)]
 struct State {
     phase: Option<Phase>,
+    /// When the phase began.
     began: Instant,
+    /// When the last line was written.
     told: Instant,
+    /// Time of the phases that are over; they may take turns.
+    spent: BTreeMap<Phase, Duration>,
+}
+
+impl State {
+    /// Adds the time of the phase that ends now.
+    fn count_time(&mut self) {
+        if let Some(phase) = self.phase {
+            *self.spent.entry(phase).or_default() += self.began.elapsed();
+        }
+        self.began = Instant::now();
+    }
 }
 
 impl Progress {
@@ -43,38 +62,57 @@ impl Progress {
             (false, false) => Show::Lines,
         };
         let now = Instant::now();
-        Self { show, verbose, state: Mutex::new(State { phase: None, began: now, told: now }) }
+        let state = State { phase: None, began: now, told: now, spent: BTreeMap::new() };
+        Self { show, verbose, state: Mutex::new(state) }
     }
 
-    /// Ends the display; the time of the last phase is told.
-    pub(super) fn finish(&self) {
-        self.tell_time(&self.lock());
-        if let Show::Bar(bar) = &self.show {
-            bar.finish_and_clear();
+    /// Says something on standard error without spoiling the bar; nothing if quiet.
+    pub(super) fn tell(&self, line: &str) {
+        match &self.show {
+            Show::Nothing => {}
+            Show::Lines => output::note(line),
+            Show::Bar(bar) => bar.suspend(|| output::note(line)),
+        }
+    }
+
+    /// Reads a mesh and says what was left out.
+    pub(super) fn read(&self, path: &Path) -> Result<PolyMesh, Failure> {
+        let loaded = io::read(path)?;
+        for warning in &loaded.warnings {
+            self.tell(&format!("warning: {warning}"));
+        }
+        Ok(loaded.mesh)
+    }
+
+    /// Ends the display; if verbose, tells how long each phase took.
+    pub(super) fn finish(self) {
+        let mut state = self.lock();
+        state.count_time();
+        for (phase, spent) in state.spent.iter().filter(|_| self.verbose) {
+            self.tell(&format!("{:>10} {:7.2} s", words(*phase), spent.as_secs_f64()));
         }
     }
 
     fn enter(&self, state: &mut State, phase: Phase) {
-        self.tell_time(state);
-        (state.phase, state.began) = (Some(phase), Instant::now());
+        state.count_time();
+        state.phase = Some(phase);
         if let Show::Bar(bar) = &self.show {
             bar.set_prefix(words(phase));
-        }
-    }
-
-    fn tell_time(&self, state: &State) {
-        if let (true, Some(phase)) = (self.verbose, state.phase) {
-            let line = format!("{}: {:.2} s", words(phase), state.began.elapsed().as_secs_f64());
-            match &self.show {
-                Show::Bar(bar) => bar.suspend(|| output::note(&line)),
-                _ => output::note(&line),
-            }
         }
     }
 
     /// A thread that panicked while it reported left nothing half done.
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// A run that stops with an error leaves no bar behind.
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Show::Bar(bar) = &self.show {
+            bar.finish_and_clear();
+        }
     }
 }
 

@@ -6,10 +6,8 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use quadmend::config::{Config, PRESETS};
-use quadmend::io::{self, Loaded};
 
 use super::failure::Failure;
-use super::output;
 use super::progress::Progress;
 
 /// Where the values of the knobs come from: defaults ← preset ← file ← assignments.
@@ -68,14 +66,5 @@ impl Running {
             })?;
         }
         Ok(Progress::new(self.quiet, self.verbose))
-    }
-
-    /// Reads a mesh and says what was left out.
-    pub(super) fn read(&self, path: &std::path::Path) -> Result<Loaded, Failure> {
-        let loaded = io::read(path)?;
-        if !self.quiet {
-            loaded.warnings.iter().for_each(|w| output::note(&format!("warning: {w}")));
-        }
-        Ok(loaded)
     }
 }

@@ -230,17 +230,21 @@ pub fn write(path: &Path, mesh: &PolyMesh) -> Result<(), WriteError> {
 }
 
 /// Whether [`write`] could write to `path` as far as its name tells, so that a long computation
-/// need not end with a file that has nowhere to go.
+/// need not end with a mesh that has nowhere to go.
 pub fn check_output(path: &Path) -> Result<(), WriteError> {
+    check_place(path)?;
+    writer_for(path).map(|_| ())
+}
+
+/// Whether there could be a file at `path`: its folder exists, and it is no folder itself.
+pub fn check_place(path: &Path) -> Result<(), WriteError> {
     let file = path.display().to_string();
     let folder = path.parent().filter(|f| !f.as_os_str().is_empty());
-    if path.is_dir() {
-        return Err(WriteError::Directory { file });
+    match folder {
+        _ if path.is_dir() => Err(WriteError::Directory { file }),
+        Some(folder) if !folder.is_dir() => Err(WriteError::NoFolder { file }),
+        _ => Ok(()),
     }
-    if folder.is_some_and(|f| !f.is_dir()) {
-        return Err(WriteError::NoFolder { file });
-    }
-    writer_for(path).map(|_| ())
 }
 
 fn writer_for(path: &Path) -> Result<&'static dyn Format, WriteError> {
