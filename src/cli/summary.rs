@@ -15,7 +15,7 @@ pub(super) fn work(report: &Report) -> String {
     lines.push(match report.edits.len() {
         0 => "no edit found that improves the mesh".to_owned(),
         n => format!(
-            "{n} edits: {local} local reductions, {walks} walks, {refills} refilled patches"
+            "edits made: {n} (local reductions {local}, walks {walks}, refilled patches {refills})"
         ),
     });
     lines.join("\n") + "\n"
