@@ -20,8 +20,3 @@ pub mod smooth;
 pub mod sqrtcc;
 pub mod surface;
 pub mod watch;
-
-/// The example of the README, as a test.
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;
