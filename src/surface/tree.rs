@@ -1,9 +1,12 @@
 //! A bounding-volume tree over triangles that answers "which point is closest?" exactly.
 //!
-//! A median-split tree in the manner of Ericson, *Real-Time Collision Detection* (2005), §6.2.
-//! The `bvh` crate does not fit: its surface-area cost is 0/0 on collinear sets (feature
-//! segments!), its nearest query is recursive, takes no starting bound and breaks ties by
-//! traversal order.
+//! Median splits in the manner of Ericson, *Real-Time Collision Detection* (2005), §6.2, two of
+//! them a node, so that a node has four children whose boxes are tested together in single
+//! precision (Dammertz, Hanika and Keller, *Shallow Bounding Volume Hierarchies*, 2008).
+//!
+//! The `bvh` crate does not fit: its nearest query is recursive, takes no starting bound and
+//! breaks ties by traversal order. Its surface-area splits under this same search took 4 % fewer
+//! instructions a query on scans and 3 % more on machine parts, and 12 % more to build.
 //!
 //! *Invariant:* the answer is the smallest pair (computed distance, triangle number), whatever
 //! the traversal order and the starting bound. Boxes are widened by far more than the rounding
@@ -12,19 +15,55 @@
 use super::Hit;
 use crate::mesh::Point;
 
-/// Most triangles of a leaf.
-const LEAF: usize = 4;
-/// Marks a child that is a leaf; three bits of length and 28 bits of start follow.
+/// Children of a node.
+const WIDTH: usize = 4;
+/// Marks a child that is a triangle.
 const LEAF_BIT: u32 = 1 << 31;
-/// Median splits halve the count, so no path is longer than the number of bits of an id.
-const STACK: usize = 64;
+/// Every level has a fourth of the triangles of the one above and leaves at most all children
+/// but one on the stack.
+const STACK: usize = (WIDTH - 1) * 16 + 1;
+/// What a box is widened by, relative to the whole: far more than single precision rounds.
+const MARGIN: f32 = 1e-6;
+/// What squared distances are widened by, for the same reason.
+const SLACK: f64 = 1.0 + 2e-6;
 
-/// Two child boxes and where the children are.
+/// The boxes of the children, axis by axis, and where the children are.
 #[derive(Debug, Clone, Copy)]
 struct Node {
-    lo: [[f32; 3]; 2],
-    hi: [[f32; 3]; 2],
-    child: [u32; 2],
+    lo: [[f32; WIDTH]; 3],
+    hi: [[f32; WIDTH]; 3],
+    child: [u32; WIDTH],
+}
+
+impl Node {
+    /// No child: no query is near any of the boxes.
+    const EMPTY: Self =
+        Self { lo: [[f32::MAX; WIDTH]; 3], hi: [[f32::MAX; WIDTH]; 3], child: [0; WIDTH] };
+
+    fn set(&mut self, side: usize, bounds: &Bounds, child: u32) {
+        for k in 0..3 {
+            (self.lo[k][side], self.hi[k][side]) = (bounds.lo[k], bounds.hi[k]);
+        }
+        self.child[side] = child;
+    }
+
+    /// Squared distances of the boxes, all four at a time.
+    // Inlined, or with iterators in place of the indices, it is not vectorised.
+    #[allow(clippy::needless_range_loop)]
+    #[inline(never)]
+    fn distances(&self, query: &[f32; 3]) -> [f32; WIDTH] {
+        let mut sum = [0.0; WIDTH];
+        for k in 0..3 {
+            for side in 0..WIDTH {
+                let (below, above) = (self.lo[k][side] - query[k], query[k] - self.hi[k][side]);
+                // Unlike `f32::max` this is one instruction: nothing here is NaN.
+                let far = if below > above { below } else { above };
+                let far = if far > 0.0 { far } else { 0.0 };
+                sum[side] += far * far;
+            }
+        }
+        sum
+    }
 }
 
 /// The tree; triangle `i` is the `i`-th of the order that [`Tree::build`] returns.
@@ -32,30 +71,21 @@ struct Node {
 pub(super) struct Tree {
     nodes: Vec<Node>,
     triangles: Vec<[Point; 3]>,
+    frame: Frame,
 }
 
 impl Tree {
     /// Builds the tree over at least one triangle, in O(n log n); also returns the order in
     /// which it stores the triangles, which is spatially coherent.
     pub(super) fn build(triangles: &[[Point; 3]]) -> (Self, Vec<u32>) {
+        let frame = Frame::new(triangles);
+        let boxes: Vec<Bounds> = triangles.iter().map(|t| frame.bounds(t)).collect();
         let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
-        let centres: Vec<Point> = triangles
-            .iter()
-            .map(|[a, b, c]| Point::from((a.coords + b.coords + c.coords) / 3.0))
-            .collect();
-        let scale = triangles.iter().flatten().fold(0.0, |m: f64, p| m.max(p.coords.amax()));
-        let mut builder =
-            Builder { triangles, centres: &centres, nodes: Vec::new(), margin: scale * 1e-6 };
-        if order.len() <= LEAF {
-            let (lo, hi) = builder.bounds(&order);
-            let child = [leaf(0, order.len()), leaf(0, 0)];
-            builder.nodes.push(Node { lo: [lo; 2], hi: [hi; 2], child });
-        } else {
-            builder.split(&mut order, 0);
-        }
+        let mut builder = Builder { boxes: &boxes, nodes: Vec::with_capacity(boxes.len() / 2) };
+        builder.add_node(&mut order, 0);
         let nodes = builder.nodes;
         let triangles = order.iter().map(|&t| triangles[t as usize]).collect();
-        (Self { nodes, triangles }, order)
+        (Self { nodes, triangles, frame }, order)
     }
 
     /// The corners of triangle `t`.
@@ -70,46 +100,48 @@ impl Tree {
     }
 
     /// The best of `best` and all triangles that `accept` takes; O(log n) expected.
+    // In one piece: with the stack in functions of its own it takes a fifth more instructions.
     pub(super) fn search(
         &self,
         query: &Point,
         mut best: Best,
         accept: impl Fn(u32) -> bool,
     ) -> Best {
-        let mut stack = [(0u32, 0.0f64); STACK];
+        let place = self.frame.place(query);
+        let mut bound = self.frame.bound(best.squared);
+        let mut stack = [(0u32, 0.0f32); STACK];
         let mut top = 1;
         while top > 0 {
             top -= 1;
-            let (code, bound) = stack[top];
-            if bound > best.squared {
+            let (code, near) = stack[top];
+            if near > bound {
                 continue;
             }
             if code & LEAF_BIT != 0 {
-                self.scan(code, query, &mut best, &accept);
+                let t = code & !LEAF_BIT;
+                let (squared, point) = self.at(t, query);
+                if (squared, t) < (best.squared, best.triangle) && accept(t) {
+                    best = Best { squared, triangle: t, point };
+                    bound = self.frame.bound(squared);
+                }
                 continue;
             }
             let node = &self.nodes[code as usize];
-            let near = [box_distance(node, 0, query), box_distance(node, 1, query)];
-            let first = usize::from(near[1] < near[0]);
-            // The farther child goes below the nearer one, which is looked at next.
-            for side in [1 - first, first] {
-                if near[side] <= best.squared {
-                    stack[top] = (node.child[side], near[side]);
+            let base = top;
+            for (near, child) in node.distances(&place).into_iter().zip(node.child) {
+                if near <= bound {
+                    // Nearer ones go above farther ones and are looked at first.
+                    let mut at = top;
+                    while at > base && stack[at - 1].1 < near {
+                        stack[at] = stack[at - 1];
+                        at -= 1;
+                    }
+                    stack[at] = (child, near);
                     top += 1;
                 }
             }
         }
         best
-    }
-
-    fn scan(&self, code: u32, query: &Point, best: &mut Best, accept: &impl Fn(u32) -> bool) {
-        let start = code & 0x0fff_ffff;
-        for t in start..start + ((code >> 28) & 7) {
-            let (squared, point) = self.at(t, query);
-            if (squared, t) < (best.squared, best.triangle) && accept(t) {
-                *best = Best { squared, triangle: t, point };
-            }
-        }
     }
 }
 
@@ -137,65 +169,119 @@ impl Best {
     }
 }
 
+/// Maps the triangles into the cube [−1, 1]³, where single precision is good enough for boxes.
+#[derive(Debug, Clone, Copy)]
+struct Frame {
+    centre: Point,
+    /// One over half the longest side of the bounding box.
+    scale: f64,
+}
+
+impl Frame {
+    fn new(triangles: &[[Point; 3]]) -> Self {
+        let first = triangles[0][0];
+        let corners = triangles.iter().flatten();
+        let (lo, hi) = corners.fold((first, first), |(lo, hi), p| (lo.inf(p), hi.sup(p)));
+        let centre = lo + (hi - lo) * 0.5;
+        let scale = 1.0 / (hi - centre).amax();
+        Self { centre, scale: if scale.is_normal() { scale } else { 1.0 } }
+    }
+
+    /// Where a query is; far ones are brought closer, so that squares of distances are finite.
+    fn place(&self, query: &Point) -> [f32; 3] {
+        const FAR: f64 = 1e9;
+        let place = (query - self.centre) * self.scale;
+        [0, 1, 2].map(|k| place[k].clamp(-FAR, FAR) as f32)
+    }
+
+    /// The largest squared distance of a box whose triangles may be within √`squared`.
+    fn bound(&self, squared: f64) -> f32 {
+        ((squared * self.scale * self.scale * SLACK) as f32).min(f32::MAX)
+    }
+
+    fn bounds(&self, corners: &[Point; 3]) -> Bounds {
+        let mut bounds = Bounds::NONE;
+        for place in corners.map(|p| self.place(&p)) {
+            bounds = bounds.with(&Bounds { lo: place, hi: place });
+        }
+        Bounds { lo: bounds.lo.map(|x| x - MARGIN), hi: bounds.hi.map(|x| x + MARGIN) }
+    }
+}
+
+/// A box in the frame.
+#[derive(Debug, Clone, Copy)]
+struct Bounds {
+    lo: [f32; 3],
+    hi: [f32; 3],
+}
+
+impl Bounds {
+    const NONE: Self = Self { lo: [f32::INFINITY; 3], hi: [f32::NEG_INFINITY; 3] };
+
+    fn with(&self, other: &Self) -> Self {
+        Self {
+            lo: [0, 1, 2].map(|k| if other.lo[k] < self.lo[k] { other.lo[k] } else { self.lo[k] }),
+            hi: [0, 1, 2].map(|k| if other.hi[k] > self.hi[k] { other.hi[k] } else { self.hi[k] }),
+        }
+    }
+
+    fn doubled_centre(&self) -> [f32; 3] {
+        [0, 1, 2].map(|k| self.lo[k] + self.hi[k])
+    }
+}
+
 struct Builder<'a> {
-    triangles: &'a [[Point; 3]],
-    centres: &'a [Point],
+    boxes: &'a [Bounds],
     nodes: Vec<Node>,
-    margin: f64,
 }
 
 impl Builder<'_> {
     /// Adds the node over `order`, whose first element is number `start` of the whole order.
-    fn split(&mut self, order: &mut [u32], start: usize) -> u32 {
-        if order.len() <= LEAF {
-            return leaf(start, order.len());
+    fn add_node(&mut self, order: &mut [u32], start: usize) -> (u32, Bounds) {
+        let at = self.nodes.len();
+        self.nodes.push(Node::EMPTY);
+        let (left, right) = self.halve(order);
+        let halves = [self.halve(left), self.halve(right)];
+        let (mut first, mut whole) = (start, Bounds::NONE);
+        for (side, part) in halves.into_iter().flat_map(<[_; 2]>::from).enumerate() {
+            let (child, bounds) = match *part {
+                [] => continue,
+                [t] => (LEAF_BIT | first as u32, self.boxes[t as usize]),
+                _ => self.add_node(part, first),
+            };
+            self.nodes[at].set(side, &bounds, child);
+            first += part.len();
+            whole = whole.with(&bounds);
+        }
+        (at as u32, whole)
+    }
+
+    /// Splits triangles in the middle of the axis along which they are spread most.
+    fn halve<'o>(&self, order: &'o mut [u32]) -> (&'o mut [u32], &'o mut [u32]) {
+        if order.len() <= 1 {
+            return order.split_at_mut(order.len());
         }
         let axis = self.widest_axis(order);
-        let middle = order.len() / 2;
-        let key = |t: u32| self.centres[t as usize][axis];
-        order.select_nth_unstable_by(middle, |&a, &b| key(a).total_cmp(&key(b)).then(a.cmp(&b)));
-        let (left, right) = order.split_at_mut(middle);
-        let ((lo0, hi0), (lo1, hi1)) = (self.bounds(left), self.bounds(right));
-        let at = self.nodes.len();
-        self.nodes.push(Node { lo: [lo0, lo1], hi: [hi0, hi1], child: [0; 2] });
-        let child = [self.split(left, start), self.split(right, start + middle)];
-        self.nodes[at].child = child;
-        at as u32
+        let key = |t: u32| self.boxes[t as usize].doubled_centre()[axis];
+        // Fours make full nodes at the bottom.
+        let middle = order.len().div_ceil(2);
+        let middle = if middle > WIDTH { middle.next_multiple_of(WIDTH) } else { middle };
+        if middle < order.len() {
+            let by_place = |&a: &u32, &b: &u32| key(a).total_cmp(&key(b)).then(a.cmp(&b));
+            order.select_nth_unstable_by(middle, by_place);
+        }
+        order.split_at_mut(middle)
     }
 
     fn widest_axis(&self, order: &[u32]) -> usize {
-        let first = self.centres[order[0] as usize];
-        let (lo, hi) = order.iter().fold((first, first), |(lo, hi), &t| {
-            let c = &self.centres[t as usize];
-            (lo.inf(c), hi.sup(c))
-        });
-        (hi - lo).imax()
-    }
-
-    /// The box of some triangles, widened so that single precision and rounding do no harm.
-    fn bounds(&self, order: &[u32]) -> ([f32; 3], [f32; 3]) {
-        let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for p in order.iter().flat_map(|&t| &self.triangles[t as usize]) {
-            for k in 0..3 {
-                (lo[k], hi[k]) = (lo[k].min(p[k]), hi[k].max(p[k]));
-            }
+        let mut range = Bounds::NONE;
+        for &t in order {
+            let centre = self.boxes[t as usize].doubled_centre();
+            range = range.with(&Bounds { lo: centre, hi: centre });
         }
-        (lo.map(|x| (x - self.margin) as f32), hi.map(|x| (x + self.margin) as f32))
+        let extent = |k: usize| range.hi[k] - range.lo[k];
+        (1..3).fold(0, |best, k| if extent(k) > extent(best) { k } else { best })
     }
-}
-
-fn leaf(start: usize, len: usize) -> u32 {
-    LEAF_BIT | (len as u32) << 28 | start as u32
-}
-
-fn box_distance(node: &Node, side: usize, query: &Point) -> f64 {
-    let mut sum = 0.0;
-    for k in 0..3 {
-        let (lo, hi) = (f64::from(node.lo[side][k]), f64::from(node.hi[side][k]));
-        let d = (lo - query[k]).max(query[k] - hi).max(0.0);
-        sum += d * d;
-    }
-    sum
 }
 
 /// The closest point of a triangle, which may be degenerate (Ericson 2005, §5.1.5). O(1).
