@@ -5,23 +5,32 @@
 //! centred on the mean of the corners and counter-clockwise about the given normal, so a face
 //! that is turned over is pulled right.
 
+use std::f64::consts::FRAC_PI_2;
+
 use crate::mesh::Vector;
 
 /// What is asked of shapes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shape {
-    /// Largest difference of the angle between the diagonals from 90 degrees, in radians.
-    pub(super) slant: f64,
-    /// Its sine: the largest cosine between diagonals that needs no turning.
-    pub(super) sin_slant: f64,
+    /// The largest cosine between diagonals that needs no turning.
+    sin_slant: f64,
+    /// Cosine and sine of half the least and half the largest angle between diagonals.
+    half_least: [f64; 2],
+    half_most: [f64; 2],
     /// Cosine of the angle from which a corner hangs.
-    pub(super) cos_hang: f64,
+    cos_hang: f64,
 }
 
 impl Shape {
     pub(super) fn new(slant_deg: f64, hang_deg: f64) -> Self {
         let slant = slant_deg.to_radians();
-        Self { slant, sin_slant: slant.sin(), cos_hang: hang_deg.to_radians().cos() }
+        let half = |angle: f64| [(angle * 0.5).cos(), (angle * 0.5).sin()];
+        Self {
+            sin_slant: slant.sin(),
+            half_least: half(FRAC_PI_2 - slant),
+            half_most: half(FRAC_PI_2 + slant),
+            cos_hang: hang_deg.to_radians().cos(),
+        }
     }
 }
 
@@ -30,26 +39,44 @@ impl Shape {
 /// The diagonals are made equally long; each is turned by half of what the angle between them
 /// lacks. They are turned in their own plane if that faces like `normal`, otherwise in the plane
 /// of `normal`, where a quad that is turned over has a negative angle.
+#[inline]
 pub(super) fn rectangle(arms: &[Vector; 4], normal: &Vector, shape: &Shape) -> [Vector; 4] {
     let (d1, d2) = (arms[2] - arms[0], arms[3] - arms[1]);
     let (l1, l2) = (d1.norm(), d2.norm());
     let length = (l1 + l2) * 0.25;
-    let cross = d1.cross(&d2);
-    let area = l1 * l2;
-    let sound = area > 0.0 && cross.dot(normal) > 0.0;
-    if sound && d1.dot(&d2).abs() <= shape.sin_slant * area {
-        let (u, v) = (d1 * (length / l1), d2 * (length / l2));
-        return [-u, -v, u, v];
+    if d1.cross(&d2).dot(normal) > 0.0 && l1 * l2 > 0.0 {
+        let (u, v) = (d1 / l1, d2 / l2);
+        let cos = u.dot(&v);
+        if cos.abs() <= shape.sin_slant {
+            let (u, v) = (u * length, v * length);
+            return [-u, -v, u, v];
+        }
+        if 1.0 - cos * cos > 1e-12 {
+            let (u, v) = opened(&u, &v, cos, shape);
+            let (u, v) = (u * length, v * length);
+            return [-u, -v, u, v];
+        }
     }
-    let own = cross.norm();
-    let plane = if sound && own > 1e-6 * area { cross / own } else { unit(normal) };
-    let (u, v) = turned(&d1, &d2, &plane, shape.slant);
+    let (u, v) = turned(&d1, &d2, &unit(normal), shape);
     let (u, v) = (u * length, v * length);
     [-u, -v, u, v]
 }
 
+/// Unit directions at an angle with this cosine after turning them, in their plane, to the
+/// nearest fair angle.
+///
+/// With b and p the unit vectors along u + v and v − u, directions at the angle a are
+/// b cos(a/2) ∓ p sin(a/2).
+fn opened(u: &Vector, v: &Vector, cos: f64, shape: &Shape) -> (Vector, Vector) {
+    let [c, s] = if cos > 0.0 { shape.half_least } else { shape.half_most };
+    let (along, across) = (c / (2.0 + 2.0 * cos).sqrt(), s / (2.0 - 2.0 * cos).sqrt());
+    let (own, other) = (along + across, along - across);
+    (u * own + v * other, v * own + u * other)
+}
+
 /// Unit directions of two diagonals in a plane after turning them to a fair angle.
-fn turned(d1: &Vector, d2: &Vector, plane: &Vector, slant: f64) -> (Vector, Vector) {
+#[cold]
+fn turned(d1: &Vector, d2: &Vector, plane: &Vector, shape: &Shape) -> (Vector, Vector) {
     let flat = |d: &Vector| d - plane * plane.dot(d);
     let (mut u, mut v) = (unit(&flat(d1)), unit(&flat(d2)));
     // A collapsed diagonal has no direction: the other one says where it should point.
@@ -58,10 +85,19 @@ fn turned(d1: &Vector, d2: &Vector, plane: &Vector, slant: f64) -> (Vector, Vect
     } else if v == Vector::zeros() {
         v = plane.cross(&u);
     }
-    let angle = plane.dot(&u.cross(&v)).atan2(u.dot(&v));
-    let right = std::f64::consts::FRAC_PI_2;
-    let (sin, cos) = ((angle.clamp(right - slant, right + slant) - angle) * 0.5).sin_cos();
-    (u * cos - plane.cross(&u) * sin, v * cos + plane.cross(&v) * sin)
+    let (sin, cos) = (plane.dot(&u.cross(&v)), u.dot(&v));
+    if sin >= 0.0 && cos.abs() <= shape.sin_slant {
+        return (u, v);
+    }
+    // The bisector of a negative angle is found alike; that angle is less than the least.
+    let [c, s] = if sin >= 0.0 && cos < 0.0 { shape.half_most } else { shape.half_least };
+    let bisector = if cos > 0.0 {
+        unit(&(u + v))
+    } else {
+        unit(&(v - u)).cross(plane) * if sin >= 0.0 { 1.0 } else { -1.0 }
+    };
+    let across = plane.cross(&bisector);
+    (bisector * c - across * s, bisector * c + across * s)
 }
 
 /// Replaces arms from a common centre by those of the best-fitting regular polygon. O(d).

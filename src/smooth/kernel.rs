@@ -262,6 +262,8 @@ impl Kernel {
     }
 
     /// Turns fitted corners into weighted targets; the energy of the face.
+    // Inlined, so that the loops of quads have a known length.
+    #[inline]
     fn weigh(
         &self,
         setting: &Setting,
@@ -275,10 +277,11 @@ impl Kernel {
             error += (a - t).norm_squared();
         }
         // A face that has shrunk to a point is all error; it weighs like one of a tenth the size.
-        let r2 = (size / arms.len().max(1) as f64).max(self.mean_size * 1e-2 * 1e-2);
-        let strain = error / arms.len().max(1) as f64 / r2;
+        let share = 1.0 / arms.len().max(1) as f64;
+        let r2 = (size * share).max(self.mean_size * 1e-2 * 1e-2);
+        let strain = error * share / r2;
         let weight = (1.0 + setting.stress * strain.min(4.0)) / r2;
-        let scale = (1.0 - 0.5 * setting.even * (r2 / self.mean_size).ln()).clamp(0.9, 1.1);
+        let scale = (1.0 - 0.5 * setting.even * rough_ln(r2 / self.mean_size)).clamp(0.9, 1.1);
         for (t, out) in fitted.iter().zip(targets) {
             let place = (centre + t * scale) * weight;
             *out = Target { sum: place.into(), weight };
@@ -437,6 +440,13 @@ impl Kernel {
         let arm = |v: u32| self.lead[v as usize] - origin;
         face.windows(2).map(|e| arm(e[0]).cross(&arm(e[1]))).sum()
     }
+}
+
+/// The logarithm of a positive number, exact at powers of two and straight between them: at most
+/// 0.06 too small, which is nothing to the pull of sizes, and ten times as fast.
+fn rough_ln(x: f64) -> f64 {
+    const ONE: f64 = (1u64 << 52) as f64;
+    (x.to_bits() as f64 / ONE - 1023.0) * std::f64::consts::LN_2
 }
 
 /// Puts a vertex on the reference, on its own side of it.
