@@ -1,2 +1,9 @@
-//! The `quadmend` command.
-fn main() {}
+//! The `quadmend` command: parse, run, exit code.
+
+mod cli;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    cli::main()
+}

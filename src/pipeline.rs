@@ -7,7 +7,9 @@ use crate::planner::automation::Automation;
 use crate::planner::schedule::{EditRecord, RoundRecord, Schedule};
 use crate::smooth;
 use crate::sqrtcc::{LiftError, QuadMesh, lift, lower};
-use crate::surface::{self, Deviation, Reference, SurfaceError, mesh_features};
+use crate::surface::{
+    self, Deviation, Reference, SurfaceError, mean_edge, mesh_features, vertices_on_lines,
+};
 use crate::watch::{Phase, Watch};
 use serde::Serialize;
 use thiserror::Error;
@@ -127,11 +129,13 @@ fn edit(
     watch.progress(Phase::Reference, 0, 1, None);
     let reference = Reference::new(surface)?;
     let budget = distance(mesh, &reference)?;
-    let features = mesh_features(mesh, &Topology::new(mesh), &reference, &config.features);
+    let topology = Topology::new(mesh);
+    let features = mesh_features(mesh, &topology, &reference, &config.features);
     let automation = Automation {
         reference: &reference,
         orientation: smooth::orientation(mesh, &reference),
         budget,
+        mean_edge: mean_edge(mesh, &topology),
         plan: &config.plan,
         costs: &config.cost,
         gate: &config.gate,
@@ -139,6 +143,9 @@ fn edit(
         smooth: &config.smooth,
     };
     let mut q = lift(mesh, &features)?;
+    for v in vertices_on_lines(mesh, &topology, &reference, &config.features) {
+        q.hold(v);
+    }
     let schedule = automation.run(&mut q, watch)?;
     Ok((q, features.count_ones(..) / 2, schedule))
 }

@@ -225,11 +225,33 @@ pub fn read(path: &Path) -> Result<Loaded, ReadError> {
 
 /// Writes `mesh` to `path`, whole or not at all; `-` is standard output.
 pub fn write(path: &Path, mesh: &PolyMesh) -> Result<(), WriteError> {
-    let format = format_of(path).map_err(|(extension, known)| {
+    let format = writer_for(path)?;
+    write_atomically(path, |out| format.write(mesh, out))
+}
+
+/// Whether [`write`] could write to `path` as far as its name tells, so that a long computation
+/// need not end with a mesh that has nowhere to go.
+pub fn check_output(path: &Path) -> Result<(), WriteError> {
+    check_place(path)?;
+    writer_for(path).map(|_| ())
+}
+
+/// Whether there could be a file at `path`: its folder exists, and it is no folder itself.
+pub fn check_place(path: &Path) -> Result<(), WriteError> {
+    let file = path.display().to_string();
+    let folder = path.parent().filter(|f| !f.as_os_str().is_empty());
+    match folder {
+        _ if path.is_dir() => Err(WriteError::Directory { file }),
+        Some(folder) if !folder.is_dir() => Err(WriteError::NoFolder { file }),
+        _ => Ok(()),
+    }
+}
+
+fn writer_for(path: &Path) -> Result<&'static dyn Format, WriteError> {
+    format_of(path).map_err(|(extension, known)| {
         let file = path.display().to_string();
         WriteError::UnknownFormat { file, extension, known }
-    })?;
-    write_atomically(path, |out| format.write(mesh, out))
+    })
 }
 
 /// The format for `path`, or its extension in words and the extensions that are known.

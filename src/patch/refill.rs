@@ -49,9 +49,8 @@ impl Refill {
         self.remove_inside(mesh, &rim);
         self.insert(mesh, &rim, group);
         let sound = rim.iter().all(|&v| {
-            let n = mesh.valence(v);
-            let in_range = mesh.is_held(v) || (MIN_VALENCE..=MAX_VALENCE).contains(&n);
-            in_range && mesh.check_vertex(v).is_ok()
+            let most = if mesh.is_held(v) { u32::MAX } else { MAX_VALENCE };
+            (MIN_VALENCE..=most).contains(&mesh.valence(v)) && mesh.check_vertex(v).is_ok()
         });
         if sound {
             return Ok(());

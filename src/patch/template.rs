@@ -99,6 +99,7 @@ pub fn fillings(n: usize, corners: &[usize], most: usize) -> Vec<Filling> {
     };
     match corners.len() {
         3..=5 if is_simple(&whole.sides()) => simple(&whole).into_iter().collect(),
+        4 if one_edge_apart(&whole.sides()) => dislocated(&whole, n as u32, most),
         2 | 4 | 6 => chords(&whole, most)
             .into_iter()
             .filter_map(|chord| {
@@ -165,6 +166,75 @@ fn grid(polygon: &Polygon, columns: u32, rows: u32, filling: &mut Filling) {
                 .face([(u, v), (u + 1, v), (u + 1, v + 1), (u, v + 1)].map(|(u, v)| ids[at(u, v)]));
         }
     }
+}
+
+/// Whether opposite sides differ by one edge in one direction only: a Burgers vector (±1, 0).
+fn one_edge_apart(sides: &[u32]) -> bool {
+    sides[0].abs_diff(sides[2]) + sides[1].abs_diff(sides[3]) == 1
+}
+
+/// Grids in which one column begins inside: at a face (f3–v5, a dual T-junction) or at a hanging
+/// vertex (v3–f5, a T-junction). No chord separates such a pair.
+fn dislocated(polygon: &Polygon, n: u32, most: usize) -> Vec<Filling> {
+    let sides = polygon.sides();
+    let Some(bottom) = (0..4).find(|&i| sides[i] + 1 == sides[(i + 2) % 4]) else {
+        return Vec::new();
+    };
+    let corners = (0..4).map(|i| polygon.corners[(bottom + i) % 4]).collect();
+    let turned = Polygon { rim: polygon.rim.clone(), corners };
+    let (columns, rows) = (sides[bottom], sides[(bottom + 1) % 4]);
+    // The middle first, then a quarter off it either way.
+    let spread = |size: u32| [size / 2, size / 4, size - size / 4];
+    let places = spread(columns).into_iter().zip(spread(rows));
+    let kinds = places.flat_map(|(at, level)| [(at, level, true), (at, level, false)]);
+    let fits = kinds.filter(|&(at, level, dual)| {
+        (1..rows).contains(&level) && if dual { (1..columns).contains(&at) } else { at < columns }
+    });
+    let all = fits.map(|(at, level, dual)| column_begins(&turned, n, (columns, rows), (at, level, dual)));
+    all.take(most).collect()
+}
+
+/// A grid with `columns` columns below `level` and one more above. A T-junction hangs in the
+/// upper side of cell `at` of the row below; a dual one is a triangle on vertex `at` of the level.
+fn column_begins(
+    polygon: &Polygon,
+    n: u32,
+    (columns, rows): (u32, u32),
+    (at, level, dual): (u32, u32, bool),
+) -> Filling {
+    let mut filling = Filling::new(n);
+    let first_wide = if dual { level + 1 } else { level };
+    let widths: Vec<u32> = (0..=rows).map(|v| columns + u32::from(v >= first_wide)).collect();
+    let ids: Vec<Vec<u32>> = (0..=rows)
+        .map(|v| {
+            let width = widths[v as usize];
+            let place = |u| match (u, v) {
+                (u, 0) => polygon.at(0, i64::from(u)),
+                (0, v) => polygon.at(0, -i64::from(v)),
+                (u, v) if u == width => polygon.at(1, i64::from(v)),
+                (u, v) if v == rows => polygon.at(3, -i64::from(u)),
+                _ => filling.vertex(),
+            };
+            (0..=width).map(place).collect()
+        })
+        .collect();
+    for v in 0..rows as usize {
+        let (low, high) = (&ids[v], &ids[v + 1]);
+        let widens = low.len() < high.len();
+        for u in 0..columns.min(widths[v]) as usize + usize::from(!widens && widths[v] > columns) {
+            // Above the place where the new column begins, the upper level is one ahead.
+            let shift = usize::from(widens && u >= at as usize + usize::from(!dual));
+            if widens && dual && u == at as usize {
+                filling.face([low[u], high[u + 1], high[u]]);
+            }
+            if widens && !dual && u == at as usize {
+                filling.face([low[u], low[u + 1], high[u + 2], high[u + 1], high[u]]);
+            } else {
+                filling.face([low[u], low[u + 1], high[u + 1 + shift], high[u + shift]]);
+            }
+        }
+    }
+    filling
 }
 
 /// Vertices of the block at corner `i`: `width` + 1 along side i, `height` + 1 along side i−1.
@@ -422,7 +492,7 @@ mod tests {
             &[3, 4, 4],
             &[1, 1, 1, 1, 1],
             &[2, 2, 2, 2, 2],
-            &[3, 2, 4, 3, 2],
+            &[3, 3, 3, 2, 2],
             &[2, 3, 3, 2, 3],
         ] {
             let filling = best(sides).unwrap_or_else(|| panic!("{sides:?}"));

@@ -1,11 +1,12 @@
 //! The automation: stage after stage of moves, refills and smoothing.
 
 use super::PlanOptions;
+use super::contact::Contact;
 use super::cost::CostOptions;
 use super::gate::{GateOptions, Setting};
 use super::schedule::Schedule;
-use super::worker::{Stage, Task};
-use crate::mesh::{MeshError, NONE};
+use super::worker::{Size, Stage, Task};
+use crate::mesh::MeshError;
 use crate::smooth::{self, Budget, Orientation, RelaxOptions, SmoothOptions};
 use crate::sqrtcc::{QuadMesh, lower};
 use crate::surface::Reference;
@@ -20,6 +21,8 @@ pub struct Automation<'a> {
     pub orientation: Orientation,
     /// How far the mesh may be from it, in units of the file.
     pub budget: Budget,
+    /// Mean length of the edges of the input, in units of the file.
+    pub mean_edge: f64,
     /// How edits are searched for.
     pub plan: &'a PlanOptions,
     /// What steps cost.
@@ -36,13 +39,17 @@ impl Automation<'_> {
     /// Edits and smooths `mesh`; what was done. If cancelled, the mesh is valid and smoothed as
     /// far as it got.
     pub fn run(&self, mesh: &mut QuadMesh, watch: &dyn Watch) -> Result<Schedule, MeshError> {
-        let mut schedule = Schedule::new(mesh);
+        let mut schedule = Schedule::new();
+        let faces = mesh.vertices().filter(|&v| mesh.is_face(v)).count();
+        let mut contact = Contact::new(self.reference, faces);
+        let size = Size { start: mesh.quads_alive(), drift: self.plan.size_drift };
         self.smooth(mesh, self.plan.smooth_between, watch)?;
         for i in 0..self.plan.stages {
-            let lambda = self.plan.lambda(i);
-            self.rounds(mesh, &mut schedule, (Stage::Moves, lambda), watch);
-            let faces = self.plan.patch_faces(i);
-            self.rounds(mesh, &mut schedule, (Stage::Refills { faces }, lambda), watch);
+            contact.attach(mesh, self.reference)?;
+            let (lambda, faces) = (self.plan.lambda(i), self.plan.patch_faces(i));
+            for stage in [Stage::Moves, Stage::Refills { faces }] {
+                self.rounds((mesh, &mut contact), &mut schedule, (stage, lambda, size), watch);
+            }
             if i + 1 < self.plan.stages {
                 self.smooth(mesh, self.plan.smooth_between, watch)?;
             }
@@ -52,34 +59,28 @@ impl Automation<'_> {
     }
 
     /// Rounds of one kind until nothing more is found.
-    fn rounds(&self, mesh: &mut QuadMesh, schedule: &mut Schedule, (stage, lambda): (Stage, f64), watch: &dyn Watch) {
+    fn rounds(
+        &self,
+        (mesh, contact): (&mut QuadMesh, &mut Contact),
+        schedule: &mut Schedule,
+        (stage, lambda, size): (Stage, f64, Size),
+        watch: &dyn Watch,
+    ) {
         schedule.forget_failures();
+        let gate = Setting {
+            reference: self.reference,
+            orientation: self.orientation,
+            relax: self.relax,
+            options: self.gate,
+            distance: self.gate.distance * self.budget.hausdorff,
+            cover: (self.gate.cover_edges * self.mean_edge).min(self.budget.hausdorff),
+        };
+        let task = Task { stage, lambda, plan: self.plan, costs: self.costs, size, gate };
         for _ in 0..self.plan.rounds {
-            let near = self.near(mesh);
-            let gate = Setting {
-                reference: self.reference,
-                orientation: self.orientation,
-                relax: self.relax,
-                options: self.gate,
-                distance: self.gate.distance * self.budget.hausdorff,
-                near: &near,
-            };
-            let task = Task { stage, lambda, plan: self.plan, costs: self.costs, gate };
-            if watch.cancelled() || schedule.round(mesh, &task, watch) == 0 {
+            if watch.cancelled() || !schedule.round((mesh, contact), &task, watch) {
                 return;
             }
         }
-    }
-
-    /// A triangle of the reference near each p-vertex.
-    fn near(&self, mesh: &QuadMesh) -> Vec<u32> {
-        let vertices: Vec<u32> = mesh.vertices().filter(|&v| !mesh.is_face(v)).collect();
-        let points: Vec<_> = vertices.iter().map(|&v| mesh.position(v)).collect();
-        let mut near = vec![NONE; mesh.vertex_ids() as usize];
-        for (&v, hit) in vertices.iter().zip(self.reference.closest_many(&points)) {
-            near[v as usize] = hit.triangle;
-        }
-        near
     }
 
     fn smooth(&self, mesh: &mut QuadMesh, iterations: u32, watch: &dyn Watch) -> Result<(), MeshError> {

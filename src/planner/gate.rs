@@ -5,25 +5,30 @@
 //! rate λ per irregular element removed, and the surface is within the budget, both ways.
 
 use crate::knobs::knobs;
-use crate::mesh::{NONE, Point, Vector};
+use super::contact::{Contact, fan_distance};
+use crate::mesh::{Point, Vector};
 use crate::smooth::{Orientation, Region as Patch, RelaxOptions, relax_local};
 use crate::sqrtcc::{Mark, QuadMesh, Vertex};
-use crate::surface::{Reference, squared_distance};
+use crate::surface::Reference;
 use smallvec::SmallVec;
 
 knobs! {
     /// What an edit may cost in shape and distance.
     pub struct GateOptions in "gate" {
         /// Rings of faces around an edit that relax with it.
-        rings: u32 = 4, in 1.0..=12.0, "rings";
+        rings: u32 = 3, in 1.0..=12.0, "rings";
         /// Iterations of relaxing after single operations and walks.
-        sweeps: u32 = 24, in 1.0..=1000.0, "count";
+        sweeps: u32 = 15, in 1.0..=1000.0, "count";
         /// Iterations of relaxing after a refill, beside the square root of its number of faces.
-        refill_sweeps: u32 = 30, in 1.0..=1000.0, "count";
+        refill_sweeps: u32 = 20, in 1.0..=1000.0, "count";
         /// Least scaled Jacobian of a quad, unless it was less before.
         min_jacobian: f64 = 0.4, in -1.0..=1.0, "1";
-        /// Distance to the reference that an edit may cause, as a multiple of the input's.
-        distance: f64 = 1.0, in 0.1..=10.0, "input Hausdorff distances";
+        /// Distance to the reference that an edit may cause before the final fit, which takes
+        /// back about two thirds, as a multiple of the input's.
+        distance: f64 = 1.6, in 0.1..=10.0, "input Hausdorff distances";
+        /// How far a point of the reference may be from the faces that an edit makes, unless it
+        /// was farther before.
+        cover_edges: f64 = 0.2, in 0.0..=10.0, "mean edges";
         /// Largest |ln| of the number of faces after over before a refill.
         area: f64 = 0.3, in 0.0..=3.0, "ln";
     }
@@ -42,8 +47,8 @@ pub struct Setting<'a> {
     pub options: &'a GateOptions,
     /// Largest distance to the reference, in units of the file.
     pub distance: f64,
-    /// A triangle of the reference near each vertex, by id; [`NONE`] or missing if unknown.
-    pub near: &'a [u32],
+    /// How far a point of the reference may be from the faces of an edit, in units of the file.
+    pub cover: f64,
 }
 
 /// An edit that passed.
@@ -51,8 +56,8 @@ pub struct Setting<'a> {
 pub struct Passed {
     /// Growth of Σ |angle − ideal| over all corners of the region, degrees.
     pub angle_growth: f64,
-    /// Where the free vertices of the region are now.
-    pub moved: Vec<(Vertex, Point)>,
+    /// Where the free vertices of the region are now, and a triangle of the reference there.
+    pub moved: Vec<(Vertex, Point, u32)>,
 }
 
 /// Why an edit was turned down.
@@ -65,6 +70,8 @@ pub enum Failure {
     Angles,
     /// The mesh would leave the reference.
     Distance,
+    /// The mesh would get too many or too few edges.
+    Size,
 }
 
 /// How well shaped some faces are.
@@ -97,14 +104,14 @@ impl Gate {
         &mut self,
         mesh: &mut QuadMesh,
         mark: Mark,
-        setting: &Setting,
+        (setting, contact): (&Setting, &Contact),
         (sweeps, gain, lambda): (u32, u32, f64),
     ) -> Result<Passed, Failure> {
         let touched = mesh.touched_since(mark);
-        self.gather(mesh, &touched, setting);
+        self.gather(mesh, &touched, (setting, contact));
         // The patch holds a copy of the edited surroundings: the mesh can go back already.
         mesh.undo_to(mark);
-        let before = self.shape_before(mesh, &touched, setting);
+        let before = self.shape_before(mesh, &touched, (setting, contact));
         let allowed = lambda * f64::from(gain);
         let quick = sweeps / 3;
         relax_local(&mut self.patch, setting.reference, setting.relax, quick);
@@ -119,17 +126,17 @@ impl Gate {
         if after.angles - before.angles > allowed {
             return Err(Failure::Angles);
         }
-        if self.leaves_surface(setting) || self.uncovers(mesh, &touched, setting) {
+        if self.leaves_surface(setting) || self.uncovers(&touched, (setting, contact)) {
             return Err(Failure::Distance);
         }
         let places = self.vertices.iter().zip(0..).filter(|&(_, i)| self.free[i as usize]);
-        let moved = places.map(|(&v, i)| (v, self.patch.point(i))).collect();
+        let moved = places.map(|(&v, i)| (v, self.patch.point(i), self.patch.triangle(i))).collect();
         Ok(Passed { angle_growth: after.angles - before.angles, moved })
     }
 
     /// The faces within some rings of what was touched; vertices all of whose faces are among
     /// them and that nothing holds are free.
-    fn gather(&mut self, mesh: &QuadMesh, touched: &[Vertex], setting: &Setting) {
+    fn gather(&mut self, mesh: &QuadMesh, touched: &[Vertex], (setting, contact): (&Setting, &Contact)) {
         self.stamp.resize(mesh.vertex_ids() as usize, 0);
         self.number.resize(mesh.vertex_ids() as usize, 0);
         self.epoch += 1;
@@ -156,7 +163,7 @@ impl Gate {
         self.changed.clear();
         let changed = self.faces.iter().zip(0..).filter(|(f, _)| touched.binary_search(f).is_ok());
         self.changed.extend(changed.map(|(_, i)| i));
-        self.fill_patch(mesh, first, setting);
+        self.fill_patch(mesh, first, (setting.orientation, contact));
     }
 
     fn add_vertex(&mut self, mesh: &QuadMesh, v: Vertex) {
@@ -177,14 +184,18 @@ impl Gate {
         }
     }
 
-    fn fill_patch(&mut self, mesh: &QuadMesh, expanded: usize, setting: &Setting) {
-        self.patch.begin(setting.orientation);
+    fn fill_patch(
+        &mut self,
+        mesh: &QuadMesh,
+        expanded: usize,
+        (orientation, contact): (Orientation, &Contact),
+    ) {
+        self.patch.begin(orientation);
         self.free.clear();
         for (i, &v) in self.vertices.iter().enumerate() {
-            let near = setting.near.get(v as usize).copied().filter(|&t| t != NONE);
             let free = i < expanded && !mesh.is_held(v);
             self.free.push(free);
-            self.patch.add_vertex(mesh.position(v), !free, near);
+            self.patch.add_vertex(mesh.position(v), !free, contact.near(v));
         }
         let mut corners: SmallVec<[u32; 8]> = SmallVec::new();
         for &f in &self.faces {
@@ -209,7 +220,12 @@ impl Gate {
 
     /// The shape of the same part of the mesh before the edit: the faces of the region that were
     /// there, and those that the edit removed.
-    fn shape_before(&mut self, mesh: &QuadMesh, touched: &[Vertex], setting: &Setting) -> Shape {
+    fn shape_before(
+        &mut self,
+        mesh: &QuadMesh,
+        touched: &[Vertex],
+        (setting, contact): (&Setting, &Contact),
+    ) -> Shape {
         let mut shape = Shape::default();
         let mut points: SmallVec<[Point; 8]> = SmallVec::new();
         let in_region = |&&v: &&Vertex| self.stamp.get(v as usize) != Some(&self.epoch);
@@ -220,8 +236,7 @@ impl Gate {
             points.clear();
             points.extend(mesh.neighbours(f).map(|v| mesh.position(v)));
             let corner = mesh.target(mesh.out(f));
-            let near = setting.near.get(corner as usize).copied().filter(|&t| t != NONE);
-            let up = near.map_or_else(Vector::zeros, |t| {
+            let up = contact.near(corner).map_or_else(Vector::zeros, |t| {
                 setting.reference.normal(t) * setting.orientation.sign()
             });
             shape.add(&points, &up);
@@ -243,30 +258,17 @@ impl Gate {
         Point::from(sum / face.len() as f64)
     }
 
-    /// Whether a vertex that the edit removed or changed is too far from the faces it made.
-    fn uncovers(&self, mesh: &QuadMesh, touched: &[Vertex], setting: &Setting) -> bool {
-        const MOST_PROBES: usize = 48;
-        let is_old = |&v: &Vertex| {
-            v < mesh.vertex_ids() && mesh.is_alive(v) && !mesh.is_ghost(v) && !mesh.is_face(v)
-        };
-        let old: Vec<Vertex> = touched.iter().copied().filter(is_old).collect();
-        let triangles: Vec<[Point; 3]> = self.changed.iter().flat_map(|&i| self.fan(i)).collect();
-        let allowed = setting.distance * setting.distance;
-        let every = old.len().div_ceil(MOST_PROBES).max(1);
-        old.iter().step_by(every).any(|&v| {
-            let p = mesh.position(v);
-            triangles.iter().all(|t| squared_distance(&p, t) > allowed)
+    /// Whether a point of the reference that the old faces covered is too far from the new ones.
+    fn uncovers(&self, touched: &[Vertex], (setting, contact): (&Setting, &Contact)) -> bool {
+        let new: Vec<SmallVec<[Point; 8]>> = self.changed.iter().map(|&i| self.points_of(i)).collect();
+        touched.iter().flat_map(|&f| contact.probes(f)).any(|(probe, before)| {
+            let allowed = setting.cover.max(before).powi(2);
+            new.iter().all(|face| fan_distance(face, &probe) > allowed)
         })
     }
 
-    /// A face of the patch as triangles around its middle.
-    fn fan(&self, face: u32) -> impl Iterator<Item = [Point; 3]> + '_ {
-        let middle = self.middle(face);
-        let face = self.patch.face(face as usize);
-        (0..face.len()).map(move |k| {
-            let [a, b] = [face[k], face[(k + 1) % face.len()]].map(|v| self.patch.point(v));
-            [middle, a, b]
-        })
+    fn points_of(&self, face: u32) -> SmallVec<[Point; 8]> {
+        self.patch.face(face as usize).iter().map(|&v| self.patch.point(v)).collect()
     }
 }
 

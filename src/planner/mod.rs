@@ -8,6 +8,7 @@
 
 pub mod automation;
 pub mod clusters;
+pub mod contact;
 pub mod cost;
 pub mod edit;
 pub mod gate;
@@ -28,7 +29,9 @@ knobs! {
         /// Exchange rate of the last stage.
         lambda_last: f64 = 300.0, in 0.0..=100000.0, "degree-corners per element";
         /// Most rounds of moves, and most rounds of refills, in a stage.
-        rounds: u32 = 4, in 0.0..=100.0, "count";
+        rounds: u32 = 30, in 0.0..=1000.0, "count";
+        /// Irregular elements that are planned for in the same round are this far apart.
+        spacing: u32 = 2, in 0.0..=100.0, "steps in Q";
         /// Most steps that a dislocation walks.
         reach: u32 = 16, in 0.0..=100.0, "steps";
         /// Operations in a local reduction.

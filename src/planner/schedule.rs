@@ -5,9 +5,10 @@
 //! have not been changed in this round; the rest is planned again. The result therefore does not
 //! depend on the number of threads.
 
+use super::contact::Contact;
 use super::edit::Edit;
 use super::gate::Failure;
-use super::worker::{Outcome, Proposal, Task, Worker};
+use super::worker::{Outcome, Proposal, Size, Task, Worker};
 use crate::mesh::Point;
 use crate::sqrtcc::{QuadMesh, Vertex};
 use crate::watch::{Phase, Watch};
@@ -60,7 +61,7 @@ pub struct Schedule {
     /// What each vertex, as a seed, depended on when it last failed, and in which round.
     failed: BTreeMap<Vertex, (u32, Vec<Vertex>)>,
     round: u32,
-    quads_at_start: i64,
+    spacing: Spacing,
     /// The edits made so far.
     pub edits: Vec<EditRecord>,
     /// The rounds so far.
@@ -68,16 +69,16 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// Nothing done yet to `mesh`.
+    /// Nothing done yet.
     #[must_use]
-    pub fn new(mesh: &QuadMesh) -> Self {
+    pub fn new() -> Self {
         let workers = (0..=rayon::current_num_threads()).map(|_| Mutex::default()).collect();
         Self {
             workers,
             changed: Vec::new(),
             failed: BTreeMap::new(),
             round: 0,
-            quads_at_start: mesh.quads_alive(),
+            spacing: Spacing::default(),
             edits: Vec::new(),
             rounds: Vec::new(),
         }
@@ -88,11 +89,19 @@ impl Schedule {
         self.failed.clear();
     }
 
-    /// One round; the number of edits made.
-    pub fn round(&mut self, mesh: &mut QuadMesh, task: &Task, watch: &dyn Watch) -> usize {
+    /// One round; whether there was something left to try.
+    pub fn round(
+        &mut self,
+        (mesh, contact): (&mut QuadMesh, &mut Contact),
+        task: &Task,
+        watch: &dyn Watch,
+    ) -> bool {
         self.round += 1;
-        let seeds = self.seeds(mesh);
-        let outcomes = self.plan(mesh, &seeds, task, watch);
+        let seeds = self.seeds(mesh, task.plan.spacing);
+        if seeds.is_empty() {
+            return false;
+        }
+        let outcomes = self.plan((mesh, contact), &seeds, task, watch);
         let mut record = RoundRecord { lambda: task.lambda, seeds: seeds.len(), ..RoundRecord::default() };
         let mut proposals = Vec::new();
         for (seed, outcome) in seeds.into_iter().zip(outcomes) {
@@ -105,25 +114,28 @@ impl Schedule {
             }
         }
         record.proposed = proposals.len();
-        record.made = self.commit(mesh, proposals, task);
+        record.made = self.commit((mesh, contact), proposals, (task.lambda, task.size));
         record.irregularity = mesh.total_irregularity();
-        let made = record.made;
         self.rounds.push(record);
-        made
+        true
     }
 
-    /// Irregular elements that have not failed, or around which something has changed since.
-    fn seeds(&mut self, mesh: &QuadMesh) -> Vec<Vertex> {
+    /// Irregular elements that have not failed, or around which something has changed since, and
+    /// that are some steps apart: neighbours would mostly propose the same edit.
+    fn seeds(&mut self, mesh: &QuadMesh, spacing: u32) -> Vec<Vertex> {
         self.changed.resize(mesh.vertex_ids() as usize, 0);
         let fresh = |v: &Vertex| {
             self.failed.get(v).is_none_or(|(round, scope)| {
                 scope.iter().any(|&s| self.changed[s as usize] >= *round)
             })
         };
-        mesh.vertices().filter(|&v| mesh.irregularity(v) > 0).filter(fresh).collect()
+        let irregular = mesh.vertices().filter(|&v| mesh.irregularity(v) > 0);
+        let fresh: Vec<Vertex> = irregular.filter(fresh).collect();
+        self.spacing.start(mesh);
+        fresh.into_iter().filter(|&v| self.spacing.take(mesh, v, spacing)).collect()
     }
 
-    fn plan(&self, mesh: &QuadMesh, seeds: &[Vertex], task: &Task, watch: &dyn Watch) -> Vec<Outcome> {
+    fn plan(&self, (mesh, contact): (&QuadMesh, &Contact), seeds: &[Vertex], task: &Task, watch: &dyn Watch) -> Vec<Outcome> {
         for worker in &self.workers {
             lock(worker).sync(mesh);
         }
@@ -137,7 +149,7 @@ impl Schedule {
                     return Outcome::default();
                 }
                 let index = rayon::current_thread_index().map_or(0, |i| i + 1);
-                let outcome = lock(&self.workers[index % self.workers.len()]).propose(seed, task);
+                let outcome = lock(&self.workers[index % self.workers.len()]).propose(seed, task, contact);
                 let count = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
                 watch.progress(Phase::Plan, count, seeds.len(), Some(left));
                 outcome
@@ -146,9 +158,14 @@ impl Schedule {
     }
 
     /// Makes the proposals, best first, that do not meet one made before them in this round.
-    fn commit(&mut self, mesh: &mut QuadMesh, mut proposals: Vec<Proposal>, task: &Task) -> usize {
+    fn commit(
+        &mut self,
+        (mesh, contact): (&mut QuadMesh, &mut Contact),
+        mut proposals: Vec<Proposal>,
+        (lambda, size): (f64, Size),
+    ) -> usize {
         proposals.sort_by(|a, b| {
-            let value = |p: &Proposal| f64::from(p.gain) * task.lambda.max(1.0) - p.angle_growth;
+            let value = |p: &Proposal| f64::from(p.gain) * lambda.max(1.0) - p.angle_growth;
             b.gain.cmp(&a.gain).then(value(b).total_cmp(&value(a))).then(a.seed.cmp(&b.seed))
         });
         let planned = (mesh.vertex_ids(), mesh.quad_ids());
@@ -156,12 +173,13 @@ impl Schedule {
         let mut made = 0;
         for proposal in proposals {
             let free = |&v: &Vertex| v >= planned.0 || self.changed[v as usize] < self.round;
-            if !proposal.core.iter().all(free) || self.drifts(mesh, &proposal, task) {
+            if !proposal.touched.iter().all(free) || !size.allows(mesh, proposal.quads_added) {
                 continue;
             }
-            let first_new = mesh.vertex_ids();
-            if proposal.edit.run(mesh, planned.1).is_ok() {
-                self.place(mesh, &proposal, (planned.0, first_new), &mut moved_in_round);
+            let (first_new, mark) = (mesh.vertex_ids(), mesh.mark());
+            if makes(mesh, &proposal, planned.1) {
+                self.place((mesh, contact), &proposal, (planned.0, first_new), &mut moved_in_round);
+                contact.reassign(mesh, &mesh.touched_since(mark), &proposal.core);
                 self.record(proposal);
                 made += 1;
             }
@@ -170,28 +188,23 @@ impl Schedule {
         made
     }
 
-    /// Whether the edit takes the size of the mesh farther from that of the input than allowed.
-    fn drifts(&self, mesh: &QuadMesh, proposal: &Proposal, task: &Task) -> bool {
-        let drift = |quads: i64| (quads as f64 / self.quads_at_start as f64).ln().abs();
-        let now = mesh.quads_alive();
-        let after = drift(now + proposal.quads_added);
-        after > task.plan.size_drift && after > drift(now)
-    }
-
     /// Moves vertices to where they relaxed: the changed ones, and those around them that no
     /// earlier edit of the round has moved.
-    fn place(&mut self, mesh: &mut QuadMesh, proposal: &Proposal, (planned, first_new): (u32, u32), moved: &mut [bool]) {
+    fn place(&mut self, (mesh, contact): (&mut QuadMesh, &mut Contact), proposal: &Proposal, (planned, first_new): (u32, u32), moved: &mut [bool]) {
         for &v in &proposal.core {
             if v < planned {
                 self.changed[v as usize] = self.round;
             }
         }
-        for &(v, point) in &proposal.moved {
+        for &(v, point, triangle) in &proposal.moved {
             if v >= planned {
-                mesh.set_position(v - planned + first_new, point);
+                let v = v - planned + first_new;
+                mesh.set_position(v, point);
+                contact.set_near(v, triangle);
             } else if !moved[v as usize] || proposal.core.binary_search(&v).is_ok() {
                 moved[v as usize] = true;
                 mesh.set_position(v, point);
+                contact.set_near(v, triangle);
             }
         }
     }
@@ -206,6 +219,64 @@ impl Schedule {
             place: place.coords.into(),
             edit: proposal.edit,
         });
+    }
+}
+
+/// Makes the edit if it still does what was planned.
+fn makes(mesh: &mut QuadMesh, proposal: &Proposal, planned: u32) -> bool {
+    let (mark, around) = (mesh.mark(), &proposal.core);
+    let irregularity = |mesh: &QuadMesh, vertices: &[Vertex]| -> u32 {
+        let alive = vertices.iter().filter(|&&v| v < mesh.vertex_ids() && mesh.is_alive(v));
+        alive.map(|&v| mesh.irregularity(v)).sum()
+    };
+    let before = irregularity(mesh, around);
+    if proposal.edit.run(mesh, planned).is_err() {
+        return false;
+    }
+    let mut now = mesh.touched_since(mark);
+    now.extend(around);
+    now.sort_unstable();
+    now.dedup();
+    let as_planned = irregularity(mesh, &now) + proposal.gain <= before;
+    if !as_planned {
+        mesh.undo_to(mark);
+    }
+    as_planned
+}
+
+/// Keeps chosen vertices apart.
+#[derive(Debug, Default)]
+struct Spacing {
+    /// 1 + the number of steps for which the surroundings of a vertex are still taken.
+    taken: Vec<u32>,
+    queue: Vec<(Vertex, u32)>,
+}
+
+impl Spacing {
+    fn start(&mut self, mesh: &QuadMesh) {
+        self.taken.clear();
+        self.taken.resize(mesh.vertex_ids() as usize, 0);
+    }
+
+    /// Takes `v` and what is within `steps` of it, unless it is taken.
+    fn take(&mut self, mesh: &QuadMesh, v: Vertex, steps: u32) -> bool {
+        if self.taken[v as usize] > 0 {
+            return false;
+        }
+        self.queue.clear();
+        self.queue.push((v, steps + 1));
+        let mut next = 0;
+        while let Some(&(v, left)) = self.queue.get(next) {
+            next += 1;
+            if self.taken[v as usize] >= left || mesh.is_ghost(v) {
+                continue;
+            }
+            self.taken[v as usize] = left;
+            if left > 1 {
+                self.queue.extend(mesh.neighbours(v).map(|w| (w, left - 1)));
+            }
+        }
+        true
     }
 }
 

@@ -1,6 +1,7 @@
 //! Finding the best edit for one irregular element, on a copy of the mesh that is left as it was.
 
 use super::clusters::{Clusters, Limits};
+use super::contact::Contact;
 use super::cost::CostOptions;
 use super::edit::{Edit, walk_terms};
 use super::gate::{Failure, Gate, Passed, Setting};
@@ -26,10 +27,12 @@ pub struct Proposal {
     pub angle_growth: f64,
     /// Change of the number of quads of Q (edges of the polygon mesh).
     pub quads_added: i64,
-    /// Vertices whose connectivity it changes, and their neighbours: sorted.
+    /// Vertices whose connectivity it changes: sorted.
+    pub touched: Vec<Vertex>,
+    /// Those and their neighbours: sorted.
     pub core: Vec<Vertex>,
-    /// Where vertices go.
-    pub moved: Vec<(Vertex, Point)>,
+    /// Where vertices go, and a triangle of the reference there.
+    pub moved: Vec<(Vertex, Point, u32)>,
 }
 
 /// What came of looking for an edit.
@@ -66,8 +69,30 @@ pub struct Task<'a> {
     pub plan: &'a PlanOptions,
     /// The weights of the steps.
     pub costs: &'a CostOptions,
+    /// How large the mesh may get.
+    pub size: Size,
     /// The gate.
     pub gate: Setting<'a>,
+}
+
+/// How large the mesh may get, in quads of Q.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Size {
+    /// Quads at the start.
+    pub start: i64,
+    /// Largest |ln| of the number of quads over that of the start.
+    pub drift: f64,
+}
+
+impl Size {
+    /// Whether so many more quads keep within the limit, or at least come nearer to it.
+    #[must_use]
+    pub fn allows(self, mesh: &QuadMesh, added: i64) -> bool {
+        let drift = |quads: i64| (quads as f64 / self.start.max(1) as f64).ln().abs();
+        let now = mesh.quads_alive();
+        let after = drift(now + added);
+        after <= self.drift || after <= drift(now)
+    }
 }
 
 /// A copy of the mesh, and the arrays that planning needs.
@@ -77,6 +102,9 @@ pub struct Worker {
     gate: Gate,
     clusters: Clusters,
 }
+
+/// What is looked for, and where the mesh touches the reference.
+type Context<'a> = (&'a Task<'a>, &'a Contact);
 
 /// A candidate: elements fewer, cost, edit.
 type Candidate = (u32, f64, Edit);
@@ -88,18 +116,18 @@ impl Worker {
     }
 
     /// The best edit that begins with `seed`.
-    pub fn propose(&mut self, seed: Vertex, task: &Task) -> Outcome {
+    pub fn propose(&mut self, seed: Vertex, task: &Task, contact: &Contact) -> Outcome {
         let mut outcome = Outcome { scope: vec![seed], ..Outcome::default() };
         match task.stage {
-            Stage::Moves => self.propose_move(seed, task, &mut outcome),
-            Stage::Refills { faces } => self.propose_refill(seed, faces, task, &mut outcome),
+            Stage::Moves => self.propose_move(seed, (task, contact), &mut outcome),
+            Stage::Refills { faces } => self.propose_refill((seed, faces), (task, contact), &mut outcome),
         }
         outcome.scope.sort_unstable();
         outcome.scope.dedup();
         outcome
     }
 
-    fn propose_move(&mut self, seed: Vertex, task: &Task, outcome: &mut Outcome) {
+    fn propose_move(&mut self, seed: Vertex, (task, contact): Context, outcome: &mut Outcome) {
         let mut candidates = self.reductions(seed, task.plan);
         let handles: Vec<Dipole> = self
             .mesh
@@ -113,7 +141,7 @@ impl Worker {
         candidates.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.total_cmp(&b.1)));
         for candidate in candidates.into_iter().take(task.plan.tries as usize) {
             let sweeps = task.gate.options.sweeps;
-            if let Some(proposal) = self.attempt(seed, candidate, sweeps, task, outcome) {
+            if let Some(proposal) = self.attempt(seed, candidate, sweeps, (task, contact), outcome) {
                 outcome.proposal = Some(proposal);
                 return;
             }
@@ -146,14 +174,14 @@ impl Worker {
             .collect()
     }
 
-    fn propose_refill(&mut self, seed: Vertex, faces: usize, task: &Task, outcome: &mut Outcome) {
+    fn propose_refill(&mut self, (seed, faces): (Vertex, usize), (task, contact): Context, outcome: &mut Outcome) {
         let limits = Limits { faces, partners: task.plan.partners as usize };
         let regions = self.clusters.around(&self.mesh, seed, limits);
         if let Some(largest) = regions.last() {
             outcome.scope.extend(largest.faces.iter().chain(&largest.interior));
         }
         for region in regions {
-            if let Some(best) = self.best_filling(seed, &region, task, outcome) {
+            if let Some(best) = self.best_filling(seed, &region, (task, contact), outcome) {
                 outcome.proposal = Some(best);
                 return;
             }
@@ -161,7 +189,7 @@ impl Worker {
     }
 
     /// The filling of a region that passes with the least growth of angles.
-    fn best_filling(&mut self, seed: Vertex, region: &Region, task: &Task, outcome: &mut Outcome) -> Option<Proposal> {
+    fn best_filling(&mut self, seed: Vertex, region: &Region, (task, contact): Context, outcome: &mut Outcome) -> Option<Proposal> {
         let sweeps = task.gate.options.refill_sweeps + (region.faces.len() as f64).sqrt() as u32;
         let mut best: Option<Proposal> = None;
         for filling in fillings(region.rim.len(), &region.corners, task.plan.fillings as usize) {
@@ -172,7 +200,7 @@ impl Worker {
             }
             let gain = region.irregularity - after;
             let edit = Edit::Refill(Refill::new(&self.mesh, region, filling));
-            let found = self.attempt(seed, (gain, 0.0, edit), sweeps, task, outcome);
+            let found = self.attempt(seed, (gain, 0.0, edit), sweeps, (task, contact), outcome);
             let better = |p: &Proposal| best.as_ref().is_none_or(|b| p.angle_growth < b.angle_growth);
             best = found.filter(better).or(best.take());
         }
@@ -180,16 +208,18 @@ impl Worker {
     }
 
     /// Makes an edit, has it judged, and undoes it.
-    fn attempt(&mut self, seed: Vertex, (gain, cost, edit): Candidate, sweeps: u32, task: &Task, outcome: &mut Outcome) -> Option<Proposal> {
+    fn attempt(&mut self, seed: Vertex, (gain, cost, edit): Candidate, sweeps: u32, (task, contact): Context, outcome: &mut Outcome) -> Option<Proposal> {
         let mark = self.mesh.mark();
         let (quads, planned) = (self.mesh.quads_alive(), self.mesh.quad_ids());
         edit.run(&mut self.mesh, planned).ok()?;
         let touched = self.mesh.touched_since(mark);
         let core = self.with_neighbours(&touched);
         let quads_added = self.mesh.quads_alive() - quads;
-        match self.gate.judge(&mut self.mesh, mark, &task.gate, (sweeps, gain, task.lambda)) {
+        let judged = self.gate.judge(&mut self.mesh, mark, (&task.gate, contact), (sweeps, gain, task.lambda));
+        let in_size = task.size.allows(&self.mesh, quads_added);
+        match judged.and_then(|passed| in_size.then_some(passed).ok_or(Failure::Size)) {
             Ok(Passed { angle_growth, moved }) => {
-                Some(Proposal { edit, seed, gain, cost, angle_growth, quads_added, core, moved })
+                Some(Proposal { edit, seed, gain, cost, angle_growth, quads_added, touched, core, moved })
             }
             Err(failure) => {
                 outcome.failures.push(failure);

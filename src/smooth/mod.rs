@@ -39,7 +39,7 @@ knobs! {
         /// Largest momentum.
         momentum: f64 = 0.95, in 0.0..=0.99, "factor";
         /// Vertices are projected to the reference in every so many iterations.
-        project_every: u32 = 4, in 1.0..=100.0, "iterations";
+        project_every: u32 = 12, in 1.0..=100.0, "iterations";
     }
 }
 

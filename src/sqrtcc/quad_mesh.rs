@@ -264,6 +264,11 @@ impl QuadMesh {
         (0..self.quad_ids()).filter(|&q| self.is_quad_alive(q) && self.kind(q) != QuadKind::Ghost)
     }
 
+    /// Holds a p-vertex in place for good: edits keep it and do not move it. Not journaled.
+    pub fn hold(&mut self, v: Vertex) {
+        self.class[v as usize] |= HELD;
+    }
+
     /// Moves a p-vertex. Journaled.
     pub fn set_position(&mut self, v: Vertex, point: Point) {
         self.journal.record_point(v, self.position[v as usize]);

@@ -24,11 +24,11 @@ impl QuadMesh {
         if self.is_ghost(v) {
             return 0;
         }
-        if !self.is_held(v) {
+        let begins_sector = |&h: &HalfEdge| self.is_frozen(Self::quad(self.twin(h)));
+        if !self.is_held(v) || !self.outgoing(v).any(|h| begins_sector(&h)) {
             return self.valence(v).abs_diff(4);
         }
-        let starts = self.outgoing(v).filter(|&h| self.is_frozen(Self::quad(self.twin(h))));
-        let real = starts.filter(|&h| !self.is_ghost(self.target(h)));
+        let real = self.outgoing(v).filter(begins_sector).filter(|&h| !self.is_ghost(self.target(h)));
         real.map(|h| self.excess(h).unsigned_abs()).sum()
     }
 

@@ -1,0 +1,123 @@
+//! `quadmend clean`: the whole way from a messy mesh to a clean one.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use quadmend::io;
+use quadmend::mesh::MendPolicy;
+use quadmend::pipeline::{Report, clean};
+use quadmend::watch::{Phase, Watch};
+
+use super::Exit;
+use super::failure::Failure;
+use super::limits::{self, Limit};
+use super::paths::{self, is_stream};
+use super::settings::{Running, Settings};
+use super::{output, summary};
+
+const EXAMPLES: &str = "\
+Examples:
+  quadmend clean remesh.obj --reference scan.obj -o clean.obj
+  quadmend clean remesh.obj -o clean.obj --preset balanced --set smooth.iterations=100
+  quadmend clean - -o - < remesh.obj > clean.obj
+  quadmend clean remesh.obj -o clean.obj --json report.json --fail-if 't_junctions>0'
+
+Faults that can be mended without a doubt (torn edges, turned faces, doublets, stray vertices) are
+mended first and told. Boundaries and sharp features stay where they are. The table before/after
+goes to standard output, or to standard error if standard output takes the mesh or the report.";
+
+/// Clean a mesh: cancel irregular elements and T-junctions, keep the shape
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Clean {
+    /// The mesh to clean, polygons of any degree (OBJ, - for standard input)
+    input: PathBuf,
+
+    /// Where the cleaned mesh goes (OBJ, - for standard output); an older file is replaced when
+    /// the new one is complete, but never an input unless --force is given
+    #[arg(short, long, value_name = "MESH")]
+    output: PathBuf,
+
+    /// Surface to stay on, usually the scan that was remeshed, in the same position and scale
+    /// (OBJ, - for standard input) [default: the input]
+    #[arg(short, long, value_name = "MESH")]
+    reference: Option<PathBuf>,
+
+    /// Refuse a mesh that has anything to mend, instead of mending it [default: mend and tell]
+    #[arg(long)]
+    strict: bool,
+
+    /// Write the report as JSON: metrics before and after, mends, edits (- for standard output)
+    /// [default: none]
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+
+    /// Allow an output to replace an input
+    #[arg(long)]
+    force: bool,
+
+    /// Exit with code 4 if a metric of the result is beyond a limit, for example
+    /// `irregular_elements>100` or `scaled_jacobian_min<0.1`; names and units are those of
+    /// `quadmend metrics --json`; may be repeated [default: no limit]
+    #[arg(long, value_name = "LIMIT")]
+    fail_if: Vec<Limit>,
+
+    #[command(flatten)]
+    settings: Settings,
+
+    #[command(flatten)]
+    running: Running,
+}
+
+impl Clean {
+    pub(super) fn run(&self) -> Result<Exit, Failure> {
+        self.check_paths()?;
+        let config = self.settings.load()?;
+        let progress = self.running.start()?;
+        progress.progress(Phase::Read, 0, 1, None);
+        let mesh = progress.read(&self.input)?;
+        let reference = self.reference.as_deref().map(|path| progress.read(path)).transpose()?;
+        let policy = if self.strict { MendPolicy::Strict } else { MendPolicy::Mend };
+        let cleaned = clean(mesh, reference, policy, &config, &progress)
+            .map_err(|e| Failure::of_file(&paths::shown(&self.input), e))?;
+        progress.progress(Phase::Write, 0, 1, None);
+        io::write(&self.output, &cleaned.mesh)?;
+        if let Some(path) = &self.json {
+            output::file(path, &output::json(&cleaned.report)?)?;
+        }
+        progress.finish();
+        self.tell(&cleaned.report)?;
+        Ok(limits::check(&self.fail_if, &cleaned.report.after, summary::exit(&cleaned.report)))
+    }
+
+    /// Everything that can be found wrong before the work is found before the work.
+    fn check_paths(&self) -> Result<(), Failure> {
+        let meshes: Vec<&Path> = [Some(&self.input), self.reference.as_ref()]
+            .into_iter()
+            .flatten()
+            .map(PathBuf::as_path)
+            .collect();
+        paths::read_stdin_once(&meshes)?;
+        let inputs: Vec<&Path> =
+            meshes.into_iter().chain(self.settings.config.as_deref()).collect();
+        let outputs: Vec<&Path> =
+            std::iter::once(self.output.as_path()).chain(self.json.as_deref()).collect();
+        paths::keep_apart(&inputs, &outputs, self.force)?;
+        io::check_output(&self.output)?;
+        Ok(self.json.as_deref().map_or(Ok(()), io::check_place)?)
+    }
+
+    fn tell(&self, report: &Report) -> Result<(), Failure> {
+        if self.running.quiet {
+            return Ok(());
+        }
+        output::note(summary::work(report).trim_end());
+        let table = summary::table(report);
+        let taken = is_stream(&self.output) || self.json.as_deref().is_some_and(is_stream);
+        if !taken {
+            return output::data(&table);
+        }
+        output::note(table.trim_end());
+        Ok(())
+    }
+}

@@ -1,0 +1,109 @@
+//! The command line: one file a command.
+//!
+//! Standard output carries data only (what a command is asked for); progress, warnings and errors
+//! go to standard error. A command returns its [`Exit`] or a [`Failure`] that knows its own.
+//!
+//! *Invariant:* this is the only place that prints, looks at the clock or at the terminal.
+
+mod clean;
+mod compare;
+mod config;
+mod demo;
+mod failure;
+mod generate;
+mod limits;
+mod measuring;
+mod metrics;
+mod output;
+mod paths;
+mod plan;
+mod progress;
+mod settings;
+mod summary;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use failure::Failure;
+
+/// How a run ended, as the exit code that scripts see.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Exit {
+    /// Everything asked for was done.
+    Done = 0,
+    /// There was nothing to improve; the output was written all the same.
+    NothingToImprove = 1,
+    /// The command line, the configuration or the place for the output is wrong.
+    Usage = 2,
+    /// A mesh is missing, damaged or refused.
+    BadInput = 3,
+    /// A limit of `--fail-if` was missed; the output was written all the same.
+    LimitMissed = 4,
+}
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  done
+  1  nothing to improve (the output is written all the same)
+  2  usage or configuration
+  3  bad input; nothing is written
+  4  a limit given with --fail-if was missed (the output is written all the same)
+130  interrupted";
+
+const EXAMPLES: &str = "\
+Examples:
+  quadmend demo                                             try it on the sample mesh
+  quadmend clean remesh.obj --reference scan.obj -o clean.obj
+  quadmend metrics remesh.obj                               what is wrong with it?
+  quadmend compare remesh.obj clean.obj --reference scan.obj
+  quadmend config explain smooth                            what can be tuned?";
+
+/// Cleans the connectivity of quad-dominant meshes: irregular vertices and faces and T-junctions
+/// are moved in pairs until they cancel, and the shape is kept.
+#[derive(Debug, Parser)]
+#[command(version, max_term_width = 100, arg_required_else_help = true)]
+#[command(after_help = format!("{EXAMPLES}\n\n{EXIT_CODES}"))]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Clean(clean::Clean),
+    Metrics(metrics::MetricsCommand),
+    Compare(compare::Compare),
+    Plan(plan::Plan),
+    Demo(demo::Demo),
+    Config(config::ConfigCommand),
+    Generate(generate::Generate),
+}
+
+/// Parses, runs, and says what went wrong.
+pub(crate) fn main() -> ExitCode {
+    let exit = run(&Cli::parse().command).unwrap_or_else(|failure| failure.report());
+    ExitCode::from(exit as u8)
+}
+
+fn run(command: &Command) -> Result<Exit, Failure> {
+    match command {
+        Command::Clean(command) => command.run(),
+        Command::Metrics(command) => command.run(),
+        Command::Compare(command) => command.run(),
+        Command::Plan(command) => command.run(),
+        Command::Demo(command) => command.run(),
+        Command::Config(command) => command.run(),
+        Command::Generate(command) => command.run(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        super::Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,42 @@
+//! The two streams: data on standard output, words on standard error.
+
+use std::io::{self, ErrorKind, Write};
+use std::path::Path;
+
+use quadmend::io::{WriteError, write_atomically};
+use serde::Serialize;
+
+use super::failure::Failure;
+
+/// Writes data to standard output. A reader that has seen enough (`| head`) is not an error.
+pub(super) fn data(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            let file = "standard output".to_owned();
+            Err(WriteError::Io { file, source: error }.into())
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Writes a line to standard error, for people.
+pub(super) fn note(line: &str) {
+    // There is nobody left to tell if this fails.
+    let _ = writeln!(io::stderr().lock(), "{line}");
+}
+
+/// A value as indented JSON with a line break at its end.
+pub(super) fn json(value: &impl Serialize) -> Result<String, Failure> {
+    let text = serde_json::to_string_pretty(value);
+    let text = text.map_err(|e| Failure::usage(format!("the result is no JSON: {e}")))?;
+    Ok(text + "\n")
+}
+
+/// Writes a text to a file, whole or not at all; `-` is standard output.
+pub(super) fn file(path: &Path, text: &str) -> Result<(), Failure> {
+    if path.as_os_str() == "-" {
+        return data(text);
+    }
+    Ok(write_atomically(path, |out| out.write_all(text.as_bytes()))?)
+}

@@ -1,0 +1,54 @@
+//! What must not be written over, and which stream is taken twice.
+
+use std::path::Path;
+
+use super::failure::Failure;
+
+/// Whether the path means standard input or output.
+pub(super) fn is_stream(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Refuses to read standard input for two meshes.
+pub(super) fn read_stdin_once(inputs: &[&Path]) -> Result<(), Failure> {
+    match inputs.iter().filter(|p| is_stream(p)).count() {
+        0 | 1 => Ok(()),
+        _ => Err(Failure::usage("standard input (-) can be only one of the meshes; name a file")),
+    }
+}
+
+/// Refuses outputs that would replace an input, and two outputs in one place.
+pub(super) fn keep_apart(inputs: &[&Path], outputs: &[&Path], force: bool) -> Result<(), Failure> {
+    for (i, output) in outputs.iter().enumerate() {
+        if outputs[..i].iter().any(|o| is_same(o, output)) {
+            let shown = output.display();
+            return Err(Failure::usage(format!("two outputs go to {shown}; name another file")));
+        }
+        if !force && inputs.iter().any(|i| !is_stream(i) && is_same(i, output)) {
+            return Err(Failure::usage(format!(
+                "{} is an input and would be overwritten; name another output, or allow it with \
+                 --force",
+                output.display()
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// The same file under two names, or the same name of a file that is not there yet.
+fn is_same(a: &Path, b: &Path) -> bool {
+    match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a == b,
+    }
+}
+
+/// The path as messages name it.
+pub(super) fn shown(path: &Path) -> String {
+    if is_stream(path) { "standard input".to_owned() } else { path.display().to_string() }
+}
+
+/// A short name for tables: the file name.
+pub(super) fn short_name(path: &Path) -> String {
+    path.file_name().map_or_else(|| path.display().to_string(), |n| n.display().to_string())
+}

@@ -1,0 +1,158 @@
+//! Progress on standard error: a bar on a terminal, a line every two seconds elsewhere.
+
+use std::collections::BTreeMap;
+use std::io::{IsTerminal, stderr};
+use std::path::Path;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use quadmend::io;
+use quadmend::mesh::PolyMesh;
+use quadmend::watch::{Phase, Watch};
+
+use super::failure::Failure;
+use super::output;
+
+/// Time between two lines where there is no terminal.
+const PAUSE: Duration = Duration::from_secs(2);
+
+/// Shows how far the pipeline is.
+#[derive(Debug)]
+pub(super) struct Progress {
+    show: Show,
+    verbose: bool,
+    state: Mutex<State>,
+}
+
+#[derive(Debug)]
+enum Show {
+    Nothing,
+    Lines,
+    Bar(ProgressBar),
+}
+
+#[derive(Debug)]
+struct State {
+    phase: Option<Phase>,
+    /// When the phase began.
+    began: Instant,
+    /// When the last line was written.
+    told: Instant,
+    /// Time of the phases that are over; they may take turns.
+    spent: BTreeMap<Phase, Duration>,
+}
+
+impl State {
+    /// Adds the time of the phase that ends now.
+    fn count_time(&mut self) {
+        if let Some(phase) = self.phase {
+            *self.spent.entry(phase).or_default() += self.began.elapsed();
+        }
+        self.began = Instant::now();
+    }
+}
+
+impl Progress {
+    /// Silent, or what suits standard error.
+    pub(super) fn new(quiet: bool, verbose: bool) -> Self {
+        let show = match (quiet, stderr().is_terminal()) {
+            (true, _) => Show::Nothing,
+            (false, true) => Show::Bar(bar()),
+            (false, false) => Show::Lines,
+        };
+        let now = Instant::now();
+        let state = State { phase: None, began: now, told: now, spent: BTreeMap::new() };
+        Self { show, verbose, state: Mutex::new(state) }
+    }
+
+    /// Says something on standard error without spoiling the bar; nothing if quiet.
+    pub(super) fn tell(&self, line: &str) {
+        match &self.show {
+            Show::Nothing => {}
+            Show::Lines => output::note(line),
+            Show::Bar(bar) => bar.suspend(|| output::note(line)),
+        }
+    }
+
+    /// Reads a mesh and says what was left out.
+    pub(super) fn read(&self, path: &Path) -> Result<PolyMesh, Failure> {
+        let loaded = io::read(path)?;
+        for warning in &loaded.warnings {
+            self.tell(&format!("warning: {warning}"));
+        }
+        Ok(loaded.mesh)
+    }
+
+    /// Ends the display; if verbose, tells how long each phase took.
+    pub(super) fn finish(self) {
+        let mut state = self.lock();
+        state.count_time();
+        for (phase, spent) in state.spent.iter().filter(|_| self.verbose) {
+            self.tell(&format!("{:>10} {:7.2} s", words(*phase), spent.as_secs_f64()));
+        }
+    }
+
+    fn enter(&self, state: &mut State, phase: Phase) {
+        state.count_time();
+        state.phase = Some(phase);
+        if let Show::Bar(bar) = &self.show {
+            bar.set_prefix(words(phase));
+        }
+    }
+
+    /// A thread that panicked while it reported left nothing half done.
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// A run that stops with an error leaves no bar behind.
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Show::Bar(bar) = &self.show {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+impl Watch for Progress {
+    fn progress(&self, phase: Phase, done: usize, total: usize, irregular: Option<usize>) {
+        let mut state = self.lock();
+        if state.phase != Some(phase) {
+            self.enter(&mut state, phase);
+        }
+        let left = irregular.map(|n| format!("{n} irregular")).unwrap_or_default();
+        match &self.show {
+            Show::Bar(bar) => {
+                bar.set_length(total as u64);
+                bar.set_position(done as u64);
+                bar.set_message(left);
+            }
+            Show::Lines if state.told.elapsed() >= PAUSE => {
+                state.told = Instant::now();
+                let comma = if left.is_empty() { "" } else { ", " };
+                output::note(&format!("{}: {done} of {total}{comma}{left}", words(phase)));
+            }
+            Show::Nothing | Show::Lines => {}
+        }
+    }
+}
+
+fn bar() -> ProgressBar {
+    let style = ProgressStyle::with_template("{prefix:>10} {bar:40} {pos}/{len}  {msg}");
+    // The template is a constant that indicatif accepts; its own style would do as well.
+    ProgressBar::new(0).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}
+
+fn words(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Read => "reading",
+        Phase::Reference => "reference",
+        Phase::Plan => "planning",
+        Phase::Edit => "editing",
+        Phase::Smooth => "smoothing",
+        Phase::Measure => "measuring",
+        Phase::Write => "writing",
+    }
+}

@@ -1,0 +1,137 @@
+//! Contact of the mesh with its reference, kept up to date from edit to edit.
+//!
+//! Each p-vertex knows a triangle of the reference near it; each of a fixed set of *probes* (points
+//! of the reference: spread evenly, and along its creases) knows the face of the mesh that it is
+//! closest to. An edit is then checked against the part of the reference that it has to cover,
+//! without a search: closest-point projection alone does not notice a corner that is cut off.
+
+use crate::mesh::{MeshError, NONE, Point, Vector};
+use crate::sqrtcc::{Lowered, QuadMesh, Vertex, lower};
+use crate::surface::{Reference, squared_distance};
+
+/// Probes for each face of the mesh, beside those on creases.
+const PROBES_PER_FACE: usize = 3;
+/// Creases below this angle get no probes of their own.
+const CREASE_DEG: f64 = 25.0;
+
+/// Where the mesh touches the reference.
+#[derive(Debug, Clone, Default)]
+pub struct Contact {
+    /// A triangle of the reference near each vertex, by id; [`NONE`] if unknown.
+    near: Vec<u32>,
+    points: Vec<Point>,
+    /// Distance of each probe to the mesh when it was last looked up, in units of the file.
+    distance: Vec<f64>,
+    /// First probe of each face, by vertex id, and the probe after each probe.
+    first: Vec<u32>,
+    next: Vec<u32>,
+}
+
+impl Contact {
+    /// Probes of `reference` for a mesh of so many faces; not yet attached. O(n).
+    #[must_use]
+    pub fn new(reference: &Reference, faces: usize) -> Self {
+        let mut points = reference.samples(PROBES_PER_FACE * faces);
+        let sharp = reference.creases().iter().filter(|c| c.angle_deg >= CREASE_DEG);
+        let mut ends: Vec<u32> = sharp.flat_map(|c| [c.a, c.b]).collect();
+        ends.sort_unstable();
+        ends.dedup();
+        // A finely tessellated crease needs no more probes than the mesh can resolve.
+        let every = ends.len().div_ceil(2 * faces.max(1)).max(1);
+        points.extend(ends.iter().step_by(every).map(|&v| reference.points()[v as usize]));
+        let n = points.len();
+        Self { points, distance: vec![0.0; n], next: vec![NONE; n], ..Self::default() }
+    }
+
+    /// Looks everything up anew. O(n log n), parallel.
+    pub fn attach(&mut self, mesh: &QuadMesh, reference: &Reference) -> Result<(), MeshError> {
+        let polygons = lower(mesh, &[String::new()])?;
+        self.attach_vertices(mesh, &polygons, reference);
+        self.first.clear();
+        self.first.resize(mesh.vertex_ids() as usize, NONE);
+        let Ok(surface) = Reference::plain(&polygons.mesh) else { return Ok(()) };
+        for (i, hit) in surface.closest_many(&self.points).into_iter().enumerate() {
+            let face = polygons.face_ids[surface.faces()[hit.triangle as usize] as usize];
+            self.put(i as u32, face, hit.distance);
+        }
+        Ok(())
+    }
+
+    fn attach_vertices(&mut self, mesh: &QuadMesh, polygons: &Lowered, reference: &Reference) {
+        self.near.clear();
+        self.near.resize(mesh.vertex_ids() as usize, NONE);
+        let hits = reference.closest_many(polygons.mesh.points());
+        for (&v, hit) in polygons.vertex_ids.iter().zip(hits) {
+            self.near[v as usize] = hit.triangle;
+        }
+    }
+
+    /// A triangle of the reference near `v`, if one is known.
+    #[must_use]
+    pub fn near(&self, v: Vertex) -> Option<u32> {
+        self.near.get(v as usize).copied().filter(|&t| t != NONE)
+    }
+
+    /// Notes a triangle near `v`.
+    pub fn set_near(&mut self, v: Vertex, triangle: u32) {
+        if self.near.len() <= v as usize {
+            self.near.resize(v as usize + 1, NONE);
+        }
+        self.near[v as usize] = triangle;
+    }
+
+    /// The probes that face `f` covers, each with its distance to the mesh.
+    pub fn probes(&self, f: Vertex) -> impl Iterator<Item = (Point, f64)> + '_ {
+        let first = self.first.get(f as usize).copied().unwrap_or(NONE);
+        let chain = std::iter::successors(Some(first), |&i| Some(self.next[i as usize]));
+        let chain = chain.take_while(|&i| i != NONE);
+        chain.map(|i| (self.points[i as usize], self.distance[i as usize]))
+    }
+
+    /// Hands the probes of the changed faces to the nearest of the faces there now. `changed` and
+    /// `around` are vertices of the edit; dead ones and p-vertices among them are passed over.
+    pub fn reassign(&mut self, mesh: &QuadMesh, changed: &[Vertex], around: &[Vertex]) {
+        self.first.resize(mesh.vertex_ids() as usize, NONE);
+        let mut loose = Vec::new();
+        for &f in changed {
+            let mut probe = std::mem::replace(&mut self.first[f as usize], NONE);
+            while probe != NONE {
+                loose.push(probe);
+                probe = self.next[probe as usize];
+            }
+        }
+        let is_face = |&&v: &&Vertex| mesh.is_alive(v) && mesh.is_face(v) && !mesh.is_ghost(v);
+        let mut faces: Vec<Vertex> = changed.iter().chain(around).filter(is_face).copied().collect();
+        faces.sort_unstable();
+        faces.dedup();
+        for probe in loose {
+            let at = self.points[probe as usize];
+            let distances = faces.iter().map(|&f| (distance_to_face(mesh, f, &at), f));
+            let nearest = distances.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            if let Some((squared, f)) = nearest {
+                self.put(probe, f, squared.sqrt());
+            }
+        }
+    }
+
+    fn put(&mut self, probe: u32, face: Vertex, distance: f64) {
+        self.distance[probe as usize] = distance;
+        self.next[probe as usize] = self.first[face as usize];
+        self.first[face as usize] = probe;
+    }
+}
+
+/// Squared distance to a face, taken as triangles around its middle.
+fn distance_to_face(mesh: &QuadMesh, f: Vertex, at: &Point) -> f64 {
+    let corners: smallvec::SmallVec<[Point; 8]> = mesh.neighbours(f).map(|v| mesh.position(v)).collect();
+    fan_distance(&corners, at)
+}
+
+/// Squared distance from `at` to a polygon, taken as triangles around its middle.
+#[must_use]
+pub fn fan_distance(corners: &[Point], at: &Point) -> f64 {
+    let n = corners.len();
+    let middle = Point::from(corners.iter().map(|p| p.coords).sum::<Vector>() / n.max(1) as f64);
+    let triangles = (0..n).map(|i| [middle, corners[i], corners[(i + 1) % n]]);
+    triangles.map(|t| squared_distance(at, &t)).fold(f64::INFINITY, f64::min)
+}
