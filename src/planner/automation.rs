@@ -9,7 +9,7 @@ use super::worker::{Size, Stage, Task};
 use crate::mesh::MeshError;
 use crate::smooth::{self, Budget, Orientation, RelaxOptions, SmoothOptions};
 use crate::sqrtcc::{QuadMesh, lower};
-use crate::surface::Reference;
+use crate::surface::{Reference, deviation};
 use crate::watch::Watch;
 
 /// What the automation works with and towards.
@@ -35,6 +35,11 @@ pub struct Automation<'a> {
     pub smooth: &'a SmoothOptions,
 }
 
+/// Samples each way for the distance before smoothing.
+const SAMPLES: usize = 20_000;
+/// How many times its even share of the slack in distance an element may use up.
+const GREED: f64 = 4.0;
+
 impl Automation<'_> {
     /// Edits and smooths `mesh`; what was done. If cancelled, the mesh is valid and smoothed as
     /// far as it got.
@@ -43,10 +48,13 @@ impl Automation<'_> {
         let faces = mesh.vertices().filter(|&v| mesh.is_face(v)).count();
         let mut contact = Contact::new(self.reference, faces);
         let size = Size { start: mesh.quads_alive(), drift: self.plan.size_drift };
+        contact.attach(mesh, self.reference)?;
+        let allowed = self.gate.rms.powi(2) * contact.squared_distances();
         self.smooth(mesh, self.plan.smooth_between, watch)?;
         for i in 0..self.plan.stages {
             contact.attach(mesh, self.reference)?;
             let (lambda, faces) = (self.plan.lambda(i), self.plan.patch_faces(i));
+            schedule.restart(allowed - contact.squared_distances());
             for stage in [Stage::Moves, Stage::Refills { faces }] {
                 self.rounds((mesh, &mut contact), &mut schedule, (stage, lambda, size), watch);
             }
@@ -66,13 +74,14 @@ impl Automation<'_> {
         (stage, lambda, size): (Stage, f64, Size),
         watch: &dyn Watch,
     ) {
-        schedule.forget_failures();
+        schedule.restart(schedule.slack());
         let gate = Setting {
             reference: self.reference,
             orientation: self.orientation,
             relax: self.relax,
             options: self.gate,
             distance: self.gate.distance * self.budget.hausdorff,
+            growth: GREED * schedule.slack().max(0.0) / mesh.total_irregularity().max(1) as f64,
             cover: (self.gate.cover_edges * self.mean_edge).min(self.budget.hausdorff),
         };
         let task = Task { stage, lambda, plan: self.plan, costs: self.costs, size, gate };
@@ -86,12 +95,19 @@ impl Automation<'_> {
     fn smooth(&self, mesh: &mut QuadMesh, iterations: u32, watch: &dyn Watch) -> Result<(), MeshError> {
         let polygons = lower(mesh, &[String::new()])?;
         let options = SmoothOptions { iterations, ..self.smooth.clone() };
+        let start = Reference::plain(&polygons.mesh).map(|m| deviation(&m, self.reference, SAMPLES));
+        let start = start.unwrap_or_default();
+        let share = self.smooth.budget;
+        let budget = Budget {
+            hausdorff: share * self.budget.hausdorff.max(start.hausdorff),
+            rms: share * self.budget.rms.max(start.rms),
+        };
         let (points, _) = smooth::smooth(
             &polygons.mesh,
             &polygons.held,
             self.reference,
             (&options, self.relax),
-            Some(self.budget),
+            Some(budget),
             watch,
         );
         for (&v, point) in polygons.vertex_ids.iter().zip(points) {

@@ -66,6 +66,12 @@ impl Contact {
         }
     }
 
+    /// Σ squared distance of the probes to the mesh, in squared units of the file. O(probes).
+    #[must_use]
+    pub fn squared_distances(&self) -> f64 {
+        self.distance.iter().map(|d| d * d).sum()
+    }
+
     /// A triangle of the reference near `v`, if one is known.
     #[must_use]
     pub fn near(&self, v: Vertex) -> Option<u32> {
@@ -82,9 +88,9 @@ impl Contact {
 
     /// The probes that face `f` covers, each with its distance to the mesh.
     pub fn probes(&self, f: Vertex) -> impl Iterator<Item = (Point, f64)> + '_ {
-        let first = self.first.get(f as usize).copied().unwrap_or(NONE);
-        let chain = std::iter::successors(Some(first), |&i| Some(self.next[i as usize]));
-        let chain = chain.take_while(|&i| i != NONE);
+        let some = |i: u32| (i != NONE).then_some(i);
+        let first = self.first.get(f as usize).copied().and_then(some);
+        let chain = std::iter::successors(first, move |&i| some(self.next[i as usize]));
         chain.map(|i| (self.points[i as usize], self.distance[i as usize]))
     }
 

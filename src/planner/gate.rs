@@ -28,7 +28,10 @@ knobs! {
         distance: f64 = 1.6, in 0.1..=10.0, "input Hausdorff distances";
         /// How far a point of the reference may be from the faces that an edit makes, unless it
         /// was farther before.
-        cover_edges: f64 = 0.2, in 0.0..=10.0, "mean edges";
+        cover_edges: f64 = 1.0, in 0.0..=10.0, "mean edges";
+        /// Root mean square distance of the reference to the mesh that all edits together may
+        /// cause, as a multiple of the input's.
+        rms: f64 = 1.15, in 0.0..=100.0, "input RMS distances";
         /// Largest |ln| of the number of faces after over before a refill.
         area: f64 = 0.3, in 0.0..=3.0, "ln";
     }
@@ -49,6 +52,9 @@ pub struct Setting<'a> {
     pub distance: f64,
     /// How far a point of the reference may be from the faces of an edit, in units of the file.
     pub cover: f64,
+    /// What an edit may add to Σ squared distance of the probes for each element it removes, in
+    /// squared units of the file.
+    pub growth: f64,
 }
 
 /// An edit that passed.
@@ -56,6 +62,8 @@ pub struct Setting<'a> {
 pub struct Passed {
     /// Growth of Σ |angle − ideal| over all corners of the region, degrees.
     pub angle_growth: f64,
+    /// Growth of Σ squared distance of the probes of the region; may be negative.
+    pub distance_growth: f64,
     /// Where the free vertices of the region are now, and a triangle of the reference there.
     pub moved: Vec<(Vertex, Point, u32)>,
 }
@@ -126,12 +134,13 @@ impl Gate {
         if after.angles - before.angles > allowed {
             return Err(Failure::Angles);
         }
-        if self.leaves_surface(setting) || self.uncovers(&touched, (setting, contact)) {
+        let growth = self.uncovered(&touched, (setting, contact)).ok_or(Failure::Distance)?;
+        if self.leaves_surface(setting) || growth > setting.growth * f64::from(gain) {
             return Err(Failure::Distance);
         }
         let places = self.vertices.iter().zip(0..).filter(|&(_, i)| self.free[i as usize]);
         let moved = places.map(|(&v, i)| (v, self.patch.point(i), self.patch.triangle(i))).collect();
-        Ok(Passed { angle_growth: after.angles - before.angles, moved })
+        Ok(Passed { angle_growth: after.angles - before.angles, distance_growth: growth, moved })
     }
 
     /// The faces within some rings of what was touched; vertices all of whose faces are among
@@ -258,17 +267,55 @@ impl Gate {
         Point::from(sum / face.len() as f64)
     }
 
-    /// Whether a point of the reference that the old faces covered is too far from the new ones.
-    fn uncovers(&self, touched: &[Vertex], (setting, contact): (&Setting, &Contact)) -> bool {
-        let new: Vec<SmallVec<[Point; 8]>> = self.changed.iter().map(|&i| self.points_of(i)).collect();
-        touched.iter().flat_map(|&f| contact.probes(f)).any(|(probe, before)| {
-            let allowed = setting.cover.max(before).powi(2);
-            new.iter().all(|face| fan_distance(face, &probe) > allowed)
-        })
+    /// How much Σ squared distance grows over the probes of the region; `None` if one of them is
+    /// too far from the mesh now.
+    fn uncovered(&self, touched: &[Vertex], (setting, contact): (&Setting, &Contact)) -> Option<f64> {
+        let faces: Vec<_> = (0..self.faces.len() as u32).map(|i| Ball::new(self.points_of(i))).collect();
+        let gone = touched.iter().filter(|&&v| self.stamp.get(v as usize) != Some(&self.epoch));
+        let own = self.faces.iter().zip(faces.iter().map(Some));
+        let mut growth = 0.0;
+        for (&f, own) in own.chain(gone.map(|f| (f, None))) {
+            for (probe, before) in contact.probes(f) {
+                let mut squared = own.map_or(f64::INFINITY, |face| fan_distance(&face.corners, &probe));
+                if squared > before * before {
+                    squared = faces.iter().fold(squared, |least, face| face.nearer(&probe, least));
+                }
+                if squared > setting.cover.max(before).powi(2) {
+                    return None;
+                }
+                growth += squared - before * before;
+            }
+        }
+        Some(growth)
     }
 
     fn points_of(&self, face: u32) -> SmallVec<[Point; 8]> {
         self.patch.face(face as usize).iter().map(|&v| self.patch.point(v)).collect()
+    }
+}
+
+/// A face and a ball around it.
+struct Ball {
+    corners: SmallVec<[Point; 8]>,
+    middle: Point,
+    radius: f64,
+}
+
+impl Ball {
+    fn new(corners: SmallVec<[Point; 8]>) -> Self {
+        let sum: Vector = corners.iter().map(|p| p.coords).sum();
+        let middle = Point::from(sum / corners.len().max(1) as f64);
+        let radius = corners.iter().map(|p| (p - middle).norm()).fold(0.0, f64::max);
+        Self { corners, middle, radius }
+    }
+
+    /// The squared distance from `at`, or `least` if that is not more.
+    fn nearer(&self, at: &Point, least: f64) -> f64 {
+        let gap = (at - self.middle).norm() - self.radius;
+        if gap > 0.0 && gap * gap >= least {
+            return least;
+        }
+        fan_distance(&self.corners, at).min(least)
     }
 }
 

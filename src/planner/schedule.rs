@@ -8,7 +8,7 @@
 use super::contact::Contact;
 use super::edit::Edit;
 use super::gate::Failure;
-use super::worker::{Outcome, Proposal, Size, Task, Worker};
+use super::worker::{Outcome, Proposal, Task, Worker};
 use crate::mesh::Point;
 use crate::sqrtcc::{QuadMesh, Vertex};
 use crate::watch::{Phase, Watch};
@@ -62,6 +62,8 @@ pub struct Schedule {
     failed: BTreeMap<Vertex, (u32, Vec<Vertex>)>,
     round: u32,
     spacing: Spacing,
+    /// What edits may still add to Σ squared distance of the probes.
+    slack: f64,
     /// The edits made so far.
     pub edits: Vec<EditRecord>,
     /// The rounds so far.
@@ -79,14 +81,23 @@ impl Schedule {
             failed: BTreeMap::new(),
             round: 0,
             spacing: Spacing::default(),
+            slack: 0.0,
             edits: Vec::new(),
             rounds: Vec::new(),
         }
     }
 
-    /// Lets every element be tried again: the rules have changed.
-    pub fn forget_failures(&mut self) {
+    /// Lets every element be tried again: the rules have changed. From now on edits may add
+    /// `slack` to Σ squared distance of the probes.
+    pub fn restart(&mut self, slack: f64) {
         self.failed.clear();
+        self.slack = slack;
+    }
+
+    /// What edits may still add to Σ squared distance of the probes.
+    #[must_use]
+    pub fn slack(&self) -> f64 {
+        self.slack
     }
 
     /// One round; whether there was something left to try.
@@ -114,7 +125,7 @@ impl Schedule {
             }
         }
         record.proposed = proposals.len();
-        record.made = self.commit((mesh, contact), proposals, (task.lambda, task.size));
+        record.made = self.commit((mesh, contact), proposals, task);
         record.irregularity = mesh.total_irregularity();
         self.rounds.push(record);
         true
@@ -162,10 +173,10 @@ impl Schedule {
         &mut self,
         (mesh, contact): (&mut QuadMesh, &mut Contact),
         mut proposals: Vec<Proposal>,
-        (lambda, size): (f64, Size),
+        task: &Task,
     ) -> usize {
         proposals.sort_by(|a, b| {
-            let value = |p: &Proposal| f64::from(p.gain) * lambda.max(1.0) - p.angle_growth;
+            let value = |p: &Proposal| f64::from(p.gain) * task.lambda.max(1.0) - p.angle_growth;
             b.gain.cmp(&a.gain).then(value(b).total_cmp(&value(a))).then(a.seed.cmp(&b.seed))
         });
         let planned = (mesh.vertex_ids(), mesh.quad_ids());
@@ -173,11 +184,12 @@ impl Schedule {
         let mut made = 0;
         for proposal in proposals {
             let free = |&v: &Vertex| v >= planned.0 || self.changed[v as usize] < self.round;
-            if !proposal.touched.iter().all(free) || !size.allows(mesh, proposal.quads_added) {
+            if !proposal.touched.iter().all(free) || !self.affordable(mesh, &proposal, task) {
                 continue;
             }
             let (first_new, mark) = (mesh.vertex_ids(), mesh.mark());
             if makes(mesh, &proposal, planned.1) {
+                self.slack -= proposal.distance_growth;
                 self.place((mesh, contact), &proposal, (planned.0, first_new), &mut moved_in_round);
                 contact.reassign(mesh, &mesh.touched_since(mark), &proposal.core);
                 self.record(proposal);
@@ -186,6 +198,12 @@ impl Schedule {
         }
         mesh.commit();
         made
+    }
+
+    /// Whether the mesh stays within its limits of size and distance.
+    fn affordable(&self, mesh: &QuadMesh, proposal: &Proposal, task: &Task) -> bool {
+        let near = proposal.distance_growth <= self.slack.max(0.0);
+        near && task.size.allows(mesh, proposal.quads_added)
     }
 
     /// Moves vertices to where they relaxed: the changed ones, and those around them that no

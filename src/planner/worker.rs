@@ -25,6 +25,8 @@ pub struct Proposal {
     pub cost: f64,
     /// Growth of Σ |angle − ideal|, degrees.
     pub angle_growth: f64,
+    /// Growth of Σ squared distance of the probes, in squared units of the file.
+    pub distance_growth: f64,
     /// Change of the number of quads of Q (edges of the polygon mesh).
     pub quads_added: i64,
     /// Vertices whose connectivity it changes: sorted.
@@ -218,8 +220,8 @@ impl Worker {
         let judged = self.gate.judge(&mut self.mesh, mark, (&task.gate, contact), (sweeps, gain, task.lambda));
         let in_size = task.size.allows(&self.mesh, quads_added);
         match judged.and_then(|passed| in_size.then_some(passed).ok_or(Failure::Size)) {
-            Ok(Passed { angle_growth, moved }) => {
-                Some(Proposal { edit, seed, gain, cost, angle_growth, quads_added, touched, core, moved })
+            Ok(Passed { angle_growth, distance_growth, moved }) => {
+                Some(Proposal { edit, seed, gain, cost, angle_growth, distance_growth, quads_added, touched, core, moved })
             }
             Err(failure) => {
                 outcome.failures.push(failure);

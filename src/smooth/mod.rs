@@ -60,7 +60,7 @@ knobs! {
         /// reference in the mean.
         fit: f64 = 1.0, in 0.0..=1.0, "share";
         /// Allowed Hausdorff distance and root mean square, relative to those of the start.
-        budget: f64 = 1.01, in 0.0..=10.0, "factor";
+        budget: f64 = 1.02, in 0.0..=10.0, "factor";
         /// Scaled Jacobian below which no quad may fall that was not there before.
         least_jacobian: f64 = 0.25, in -1.0..=1.0, "scaled Jacobian";
         /// Most rounds of undoing moves where a limit was broken.

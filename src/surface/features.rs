@@ -32,8 +32,9 @@ knobs! {
         mesh_crease_deg: f64 = 15.0, in 0.0..=180.0, "degrees";
         /// How near both ends and the middle of a mesh edge must be to the line.
         tolerance_edges: f64 = 0.25, in 0.0..=10.0, "mean edges of the mesh";
-        /// Vertices this near to a line are held, whether edges follow the line or not.
-        hold_edges: f64 = 0.05, in 0.0..=10.0, "mean edges of the mesh";
+        /// Vertices this near to a crease of the reference, long or short, are held: they were put
+        /// there on purpose.
+        hold_edges: f64 = 0.02, in 0.0..=10.0, "mean edges of the mesh";
         /// Connected mesh features shorter than this are dropped.
         min_mesh_chain_edges: f64 = 5.0, in 0.0..=1000.0, "mean edges of the mesh";
     }
@@ -261,8 +262,9 @@ pub fn mesh_features(
     long_components(mesh, topology, &candidates, options.min_mesh_chain_edges * edge)
 }
 
-/// The vertices of `mesh` that stand on a feature line of `reference`, within `hold_edges`: a
-/// crease that edges cross instead of following keeps its height there. O(n log n).
+/// The vertices of `mesh` that stand on a crease of `reference`, within `hold_edges`. Whether the
+/// crease is long does not matter here: on a noise crease a vertex is hardly ever so exactly, and
+/// a real one that edges cross instead of following keeps its height. O(n log n).
 #[must_use]
 pub fn vertices_on_lines(
     mesh: &PolyMesh,
@@ -271,7 +273,8 @@ pub fn vertices_on_lines(
     options: &FeatureOptions,
 ) -> Vec<u32> {
     let edge = mean_edge(mesh, topology);
-    let lines = SharpLines::new(reference, options, edge);
+    let every = FeatureOptions { min_chain_edges: 0.0, ..options.clone() };
+    let lines = SharpLines::new(reference, &every, edge);
     let radius = options.hold_edges * edge;
     let near = |&v: &u32| lines.is_within(&mesh.points()[v as usize], radius);
     (0..mesh.vertex_count() as u32).filter(near).collect()
