@@ -1,7 +1,9 @@
 //! The whole way: mend → lift → plan and edit → lower → measure.
 
 use crate::config::Config;
-use crate::mesh::{Flaw, MendError, MendPolicy, MendReport, MeshError, PolyMesh, Topology, check, mend};
+use crate::mesh::{
+    Flaw, MendError, MendPolicy, MendReport, MeshError, PolyMesh, Topology, check, mend,
+};
 use crate::metrics::{Metrics, MetricsError, Target, measure};
 use crate::planner::automation::Automation;
 use crate::planner::schedule::{EditRecord, RoundRecord, Schedule};
@@ -85,14 +87,14 @@ pub struct Cleaned {
 /// they are after mending. The result depends on the arguments only, not on threads.
 pub fn clean(
     mesh: PolyMesh,
-    reference: Option<PolyMesh>,
+    reference: Option<&PolyMesh>,
     policy: MendPolicy,
     config: &Config,
     watch: &dyn Watch,
 ) -> Result<Cleaned, CleanError> {
     let raw = mesh.clone();
     let (mesh, mends) = mend(mesh, policy)?;
-    let surface = reference.as_ref().unwrap_or(&mesh);
+    let surface = reference.unwrap_or(&mesh);
     watch.progress(Phase::Measure, 0, 2, None);
     let target = Target::new(surface, &config.measure)?;
     let before = measure(&raw, Some(&target))?;
@@ -103,19 +105,22 @@ pub fn clean(
     watch.progress(Phase::Measure, 1, 2, None);
     let after = measure(&result, Some(&target))?;
     let Schedule { edits, rounds, .. } = schedule;
-    Ok(Cleaned { mesh: result, report: Report { mends, feature_edges, before, after, edits, rounds } })
+    Ok(Cleaned {
+        mesh: result,
+        report: Report { mends, feature_edges, before, after, edits, rounds },
+    })
 }
 
 /// The edits that [`clean`] would make, without the result.
 pub fn plan(
     mesh: PolyMesh,
-    reference: Option<PolyMesh>,
+    reference: Option<&PolyMesh>,
     policy: MendPolicy,
     config: &Config,
     watch: &dyn Watch,
 ) -> Result<Vec<EditRecord>, CleanError> {
     let (mesh, _) = mend(mesh, policy)?;
-    let (_, _, schedule) = edit(&mesh, reference.as_ref().unwrap_or(&mesh), config, watch)?;
+    let (_, _, schedule) = edit(&mesh, reference.unwrap_or(&mesh), config, watch)?;
     Ok(schedule.edits)
 }
 

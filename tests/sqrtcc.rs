@@ -17,7 +17,9 @@ fn cube_edges(mesh: &PolyMesh) -> FixedBitSet {
     for h in 0..mesh.corner_count() {
         let ends =
             [h, topology.next[h] as usize].map(|c| mesh.points()[mesh.corners()[c] as usize]);
-        let sides = (0..3).filter(|&k| ends[0][k].abs() == 1.0 && ends[0][k] == ends[1][k]).count();
+        let sides = (0..3)
+            .filter(|&k| ends.iter().all(|p| (p[k] - ends[0][k].signum()).abs() < 1e-9))
+            .count();
         features.set(h, sides == 2);
     }
     features

@@ -78,7 +78,7 @@ impl Clean {
         let mesh = progress.read(&self.input)?;
         let reference = self.reference.as_deref().map(|path| progress.read(path)).transpose()?;
         let policy = if self.strict { MendPolicy::Strict } else { MendPolicy::Mend };
-        let cleaned = clean(mesh, reference, policy, &config, &progress)
+        let cleaned = clean(mesh, reference.as_ref(), policy, &config, &progress)
             .map_err(|e| Failure::of_file(&paths::shown(&self.input), e))?;
         progress.progress(Phase::Write, 0, 1, None);
         io::write(&self.output, &cleaned.mesh)?;

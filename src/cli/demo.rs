@@ -46,7 +46,8 @@ impl Demo {
         let progress = self.running.start()?;
         let (mesh, reference) = (embedded(SAMPLE)?, embedded(REFERENCE)?);
         let (input, surface) = (mesh.clone(), Some(reference.clone()));
-        let cleaned = clean(input, surface, MendPolicy::Mend, &Config::default(), &progress)?;
+        let cleaned =
+            clean(input, surface.as_ref(), MendPolicy::Mend, &Config::default(), &progress)?;
         progress.finish();
         self.write(&mesh, &reference, &cleaned)?;
         if !self.running.quiet {

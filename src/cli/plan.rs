@@ -60,7 +60,7 @@ impl Plan {
         let mesh = progress.read(&self.input)?;
         let reference = self.reference.as_deref().map(|path| progress.read(path)).transpose()?;
         let policy = if self.strict { MendPolicy::Strict } else { MendPolicy::Mend };
-        let edits = plan(mesh, reference, policy, &config, &progress)
+        let edits = plan(mesh, reference.as_ref(), policy, &config, &progress)
             .map_err(|e| Failure::of_file(&paths::shown(&self.input), e))?;
         progress.finish();
         output::data(&if self.json { output::json(&edits)? } else { table(&edits) })?;

@@ -12,8 +12,8 @@
 //!   SL   |   SR          GlideRight   FLIP(cw t, cw)      +g         keeps type
 //!       −u
 //! ```
-//! t is the twin of h. Each step is one operation with ΔE = 0 in regular surroundings; ClimbLeft
-//! and SinkLeft, ClimbRight and SinkRight, GlideLeft and GlideRight are inverse to one another.
+//! t is the twin of h. Each step is one operation with ΔE = 0 in regular surroundings; climbing
+//! and sinking to the same side, and gliding left and right, are inverse to one another.
 //! Source: Peng & Wonka 2013, section 3.4 (Propositions 3.4 and 3.6), in steps of one operation.
 
 use super::Displacement;

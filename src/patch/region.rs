@@ -221,7 +221,7 @@ impl Grower {
         region.interior = self.interior(mesh, &rim);
         region.irregularity += region.interior.iter().map(|&v| mesh.irregularity(v)).sum::<u32>();
         let corners: usize = self.faces.iter().map(|&f| mesh.valence(f) as usize).sum();
-        let edges = (corners + rim.len()) / 2;
+        let edges = corners.midpoint(rim.len());
         let euler = (region.interior.len() + rim.len() + self.faces.len()) as i64 - edges as i64;
         region.rim = rim;
         if euler == 1 { Ok(region) } else { Err(Stop::NotADisk) }

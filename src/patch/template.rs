@@ -1,7 +1,7 @@
 //! Fillings of a disk whose rim has k corners and sides of given lengths.
 //!
 //! Three and five corners take one irregular element in the middle, with a spoke to each side:
-//! side a_i = L_{i−1} + L_{i+1}. Integer spokes (even perimeter) meet in a vertex (v3, v5),
+//! `side[i] = spoke[i−1] + spoke[i+1]`. Integer spokes (even perimeter) meet in a vertex (v3, v5),
 //! half-integer ones (odd perimeter) in a face (f3, f5); a pure-quad mesher has to refuse those.
 //! Four corners with equal opposite sides are a grid. Two, six, and four that do not close are cut
 //! by a chord into two of the former.
@@ -61,6 +61,7 @@ impl Filling {
     }
 
     /// The faces, each as its vertices.
+    #[must_use]
     pub fn faces(&self) -> impl ExactSizeIterator<Item = &[u32]> + '_ {
         self.offsets.windows(2).map(|w| &self.corners[w[0] as usize..w[1] as usize])
     }
@@ -190,7 +191,8 @@ fn dislocated(polygon: &Polygon, n: u32, most: usize) -> Vec<Filling> {
     let fits = kinds.filter(|&(at, level, dual)| {
         (1..rows).contains(&level) && if dual { (1..columns).contains(&at) } else { at < columns }
     });
-    let all = fits.map(|(at, level, dual)| column_begins(&turned, n, (columns, rows), (at, level, dual)));
+    let all =
+        fits.map(|(at, level, dual)| column_begins(&turned, n, (columns, rows), (at, level, dual)));
     all.take(most).collect()
 }
 
@@ -455,7 +457,7 @@ mod tests {
         assert_eq!(open, filling.rim as usize, "only the rim is open");
         let (v, e, f) = (
             i64::from(filling.rim + filling.interior),
-            (edges.len() as i64 + i64::from(filling.rim)) / 2,
+            (edges.len() as i64).midpoint(i64::from(filling.rim)),
             filling.face_count() as i64,
         );
         assert_eq!(v - e + f, 1, "a disk");

@@ -92,10 +92,16 @@ impl Automation<'_> {
         }
     }
 
-    fn smooth(&self, mesh: &mut QuadMesh, iterations: u32, watch: &dyn Watch) -> Result<(), MeshError> {
+    fn smooth(
+        &self,
+        mesh: &mut QuadMesh,
+        iterations: u32,
+        watch: &dyn Watch,
+    ) -> Result<(), MeshError> {
         let polygons = lower(mesh, &[String::new()])?;
         let options = SmoothOptions { iterations, ..self.smooth.clone() };
-        let start = Reference::plain(&polygons.mesh).map(|m| deviation(&m, self.reference, SAMPLES));
+        let start =
+            Reference::plain(&polygons.mesh).map(|m| deviation(&m, self.reference, SAMPLES));
         let start = start.unwrap_or_default();
         let share = self.smooth.budget;
         let budget = Budget {

@@ -107,7 +107,8 @@ impl Contact {
             }
         }
         let is_face = |&&v: &&Vertex| mesh.is_alive(v) && mesh.is_face(v) && !mesh.is_ghost(v);
-        let mut faces: Vec<Vertex> = changed.iter().chain(around).filter(is_face).copied().collect();
+        let mut faces: Vec<Vertex> =
+            changed.iter().chain(around).filter(is_face).copied().collect();
         faces.sort_unstable();
         faces.dedup();
         for probe in loose {
@@ -129,7 +130,8 @@ impl Contact {
 
 /// Squared distance to a face, taken as triangles around its middle.
 fn distance_to_face(mesh: &QuadMesh, f: Vertex, at: &Point) -> f64 {
-    let corners: smallvec::SmallVec<[Point; 8]> = mesh.neighbours(f).map(|v| mesh.position(v)).collect();
+    let corners: smallvec::SmallVec<[Point; 8]> =
+        mesh.neighbours(f).map(|v| mesh.position(v)).collect();
     fan_distance(&corners, at)
 }
 

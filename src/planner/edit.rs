@@ -72,7 +72,12 @@ fn walk(mesh: &mut QuadMesh, start: Dipole, steps: &[Step]) -> Result<(), Refusa
 
 /// The cost terms of a walk. The mesh is unchanged afterwards.
 #[must_use]
-pub fn walk_terms(mesh: &mut QuadMesh, start: Dipole, steps: &[Step], costs: &CostOptions) -> Vec<CostTerm> {
+pub fn walk_terms(
+    mesh: &mut QuadMesh,
+    start: Dipole,
+    steps: &[Step],
+    costs: &CostOptions,
+) -> Vec<CostTerm> {
     let mark = mesh.mark();
     let mut sums = vec![0.0; TERMS.len()];
     let mut at = Some(start);

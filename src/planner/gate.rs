@@ -4,8 +4,8 @@
 //! still good or as good as before, corner angles have not grown worse by more than the exchange
 //! rate λ per irregular element removed, and the surface is within the budget, both ways.
 
-use crate::knobs::knobs;
 use super::contact::{Contact, fan_distance};
+use crate::knobs::knobs;
 use crate::mesh::{Point, Vector};
 use crate::smooth::{Orientation, Region as Patch, RelaxOptions, relax_local};
 use crate::sqrtcc::{Mark, QuadMesh, Vertex};
@@ -139,13 +139,19 @@ impl Gate {
             return Err(Failure::Distance);
         }
         let places = self.vertices.iter().zip(0..).filter(|&(_, i)| self.free[i as usize]);
-        let moved = places.map(|(&v, i)| (v, self.patch.point(i), self.patch.triangle(i))).collect();
+        let moved =
+            places.map(|(&v, i)| (v, self.patch.point(i), self.patch.triangle(i))).collect();
         Ok(Passed { angle_growth: after.angles - before.angles, distance_growth: growth, moved })
     }
 
     /// The faces within some rings of what was touched; vertices all of whose faces are among
     /// them and that nothing holds are free.
-    fn gather(&mut self, mesh: &QuadMesh, touched: &[Vertex], (setting, contact): (&Setting, &Contact)) {
+    fn gather(
+        &mut self,
+        mesh: &QuadMesh,
+        touched: &[Vertex],
+        (setting, contact): (&Setting, &Contact),
+    ) {
         self.stamp.resize(mesh.vertex_ids() as usize, 0);
         self.number.resize(mesh.vertex_ids() as usize, 0);
         self.epoch += 1;
@@ -269,14 +275,20 @@ impl Gate {
 
     /// How much Σ squared distance grows over the probes of the region; `None` if one of them is
     /// too far from the mesh now.
-    fn uncovered(&self, touched: &[Vertex], (setting, contact): (&Setting, &Contact)) -> Option<f64> {
-        let faces: Vec<_> = (0..self.faces.len() as u32).map(|i| Ball::new(self.points_of(i))).collect();
+    fn uncovered(
+        &self,
+        touched: &[Vertex],
+        (setting, contact): (&Setting, &Contact),
+    ) -> Option<f64> {
+        let faces: Vec<_> =
+            (0..self.faces.len() as u32).map(|i| Ball::new(self.points_of(i))).collect();
         let gone = touched.iter().filter(|&&v| self.stamp.get(v as usize) != Some(&self.epoch));
         let own = self.faces.iter().zip(faces.iter().map(Some));
         let mut growth = 0.0;
         for (&f, own) in own.chain(gone.map(|f| (f, None))) {
             for (probe, before) in contact.probes(f) {
-                let mut squared = own.map_or(f64::INFINITY, |face| fan_distance(&face.corners, &probe));
+                let mut squared =
+                    own.map_or(f64::INFINITY, |face| fan_distance(&face.corners, &probe));
                 if squared > before * before {
                     squared = faces.iter().fold(squared, |least, face| face.nearer(&probe, least));
                 }

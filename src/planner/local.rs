@@ -9,10 +9,8 @@ pub fn reductions(mesh: &mut QuadMesh, seed: Vertex, depth: u32) -> Vec<(i32, Ve
     let mut found = Vec::new();
     let near = operations(mesh, seed);
     for &op in &near {
-        if let Ok(legal) = op.check(mesh) {
-            if legal.delta() < 0 {
-                found.push((legal.delta(), vec![op]));
-            }
+        if let Some(delta) = op.check(mesh).ok().map(|l| l.delta()).filter(|&d| d < 0) {
+            found.push((delta, vec![op]));
         }
     }
     if found.is_empty() && depth >= 2 {
@@ -29,12 +27,7 @@ pub fn reductions(mesh: &mut QuadMesh, seed: Vertex, depth: u32) -> Vec<(i32, Ve
 fn pairs(mesh: &mut QuadMesh, first: Op, found: &mut Vec<(i32, Vec<Op>)>) {
     let mark = mesh.mark();
     // A first operation that costs four cannot be made good by one more.
-    let Ok(legal) = first
-        .check(mesh)
-        .and_then(|l| if l.delta() <= 2 { Ok(l) } else { Err(crate::ops::Refusal::Valence) })
-    else {
-        return;
-    };
+    let Some(legal) = first.check(mesh).ok().filter(|l| l.delta() <= 2) else { return };
     let cost = legal.delta();
     Op::apply(mesh, legal);
     for v in mesh.touched_since(mark) {
@@ -42,10 +35,9 @@ fn pairs(mesh: &mut QuadMesh, first: Op, found: &mut Vec<(i32, Vec<Op>)>) {
             continue;
         }
         for second in operations(mesh, v) {
-            if let Ok(legal) = second.check(mesh) {
-                if cost + legal.delta() < 0 {
-                    found.push((cost + legal.delta(), vec![first, second]));
-                }
+            let delta = second.check(mesh).ok().map(|legal| cost + legal.delta());
+            if let Some(delta) = delta.filter(|&d| d < 0) {
+                found.push((delta, vec![first, second]));
             }
         }
     }
@@ -88,7 +80,7 @@ fn splits_of(mesh: &QuadMesh, v: Vertex, ops: &mut Vec<Op>) {
 fn splits_beside(mesh: &QuadMesh, h: HalfEdge, ops: &mut Vec<Op>) {
     let t = mesh.twin(h);
     let n = mesh.valence(mesh.origin(t));
-    if n < 4 || n > 16 {
+    if !(4..=16).contains(&n) {
         return;
     }
     let mut other = mesh.ccw(t);

@@ -208,7 +208,8 @@ impl State<'_> {
                 Cancellation::TJunctionPair => costs.t_junction_pair,
                 Cancellation::Quadruple => costs.quadruple,
             };
-            let target = self.add(Place { goal: Some(kind), gain: done.delta.unsigned_abs(), ..place });
+            let target =
+                self.add(Place { goal: Some(kind), gain: done.delta.unsigned_abs(), ..place });
             return Some(Movement { source: node, target, cost: cost + extra });
         }
         if done.delta > 0 || done.dipole.is_none() {

@@ -71,8 +71,9 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// Nothing done yet.
+    /// Nothing done yet; one worker for each thread of the pool that it is called in.
     #[must_use]
+    #[expect(clippy::new_without_default, reason = "depends on the thread pool")]
     pub fn new() -> Self {
         let workers = (0..=rayon::current_num_threads()).map(|_| Mutex::default()).collect();
         Self {
@@ -113,7 +114,8 @@ impl Schedule {
             return false;
         }
         let outcomes = self.plan((mesh, contact), &seeds, task, watch);
-        let mut record = RoundRecord { lambda: task.lambda, seeds: seeds.len(), ..RoundRecord::default() };
+        let mut record =
+            RoundRecord { lambda: task.lambda, seeds: seeds.len(), ..RoundRecord::default() };
         let mut proposals = Vec::new();
         for (seed, outcome) in seeds.into_iter().zip(outcomes) {
             for failure in outcome.failures {
@@ -146,7 +148,13 @@ impl Schedule {
         fresh.into_iter().filter(|&v| self.spacing.take(mesh, v, spacing)).collect()
     }
 
-    fn plan(&self, (mesh, contact): (&QuadMesh, &Contact), seeds: &[Vertex], task: &Task, watch: &dyn Watch) -> Vec<Outcome> {
+    fn plan(
+        &self,
+        (mesh, contact): (&QuadMesh, &Contact),
+        seeds: &[Vertex],
+        task: &Task,
+        watch: &dyn Watch,
+    ) -> Vec<Outcome> {
         for worker in &self.workers {
             lock(worker).sync(mesh);
         }
@@ -160,7 +168,8 @@ impl Schedule {
                     return Outcome::default();
                 }
                 let index = rayon::current_thread_index().map_or(0, |i| i + 1);
-                let outcome = lock(&self.workers[index % self.workers.len()]).propose(seed, task, contact);
+                let outcome =
+                    lock(&self.workers[index % self.workers.len()]).propose(seed, task, contact);
                 let count = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
                 watch.progress(Phase::Plan, count, seeds.len(), Some(left));
                 outcome
@@ -208,7 +217,13 @@ impl Schedule {
 
     /// Moves vertices to where they relaxed: the changed ones, and those around them that no
     /// earlier edit of the round has moved.
-    fn place(&mut self, (mesh, contact): (&mut QuadMesh, &mut Contact), proposal: &Proposal, (planned, first_new): (u32, u32), moved: &mut [bool]) {
+    fn place(
+        &mut self,
+        (mesh, contact): (&mut QuadMesh, &mut Contact),
+        proposal: &Proposal,
+        (planned, first_new): (u32, u32),
+        moved: &mut [bool],
+    ) {
         for &v in &proposal.core {
             if v < planned {
                 self.changed[v as usize] = self.round;

@@ -122,7 +122,9 @@ impl Worker {
         let mut outcome = Outcome { scope: vec![seed], ..Outcome::default() };
         match task.stage {
             Stage::Moves => self.propose_move(seed, (task, contact), &mut outcome),
-            Stage::Refills { faces } => self.propose_refill((seed, faces), (task, contact), &mut outcome),
+            Stage::Refills { faces } => {
+                self.propose_refill((seed, faces), (task, contact), &mut outcome);
+            }
         }
         outcome.scope.sort_unstable();
         outcome.scope.dedup();
@@ -143,7 +145,8 @@ impl Worker {
         candidates.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.total_cmp(&b.1)));
         for candidate in candidates.into_iter().take(task.plan.tries as usize) {
             let sweeps = task.gate.options.sweeps;
-            if let Some(proposal) = self.attempt(seed, candidate, sweeps, (task, contact), outcome) {
+            if let Some(proposal) = self.attempt(seed, candidate, sweeps, (task, contact), outcome)
+            {
                 outcome.proposal = Some(proposal);
                 return;
             }
@@ -153,7 +156,9 @@ impl Worker {
     fn reductions(&mut self, seed: Vertex, plan: &PlanOptions) -> Vec<Candidate> {
         let found = local::reductions(&mut self.mesh, seed, plan.depth);
         let candidates = found.into_iter().take(plan.tries as usize);
-        candidates.map(|(delta, ops)| (delta.unsigned_abs(), ops.len() as f64, Edit::Local { ops })).collect()
+        candidates
+            .map(|(delta, ops)| (delta.unsigned_abs(), ops.len() as f64, Edit::Local { ops }))
+            .collect()
     }
 
     /// The cheapest ways for a dislocation to be absorbed.
@@ -165,7 +170,10 @@ impl Worker {
             goals.push(node);
             found.push((node, cost, graph.steps(node), graph.gain(node)));
         }
-        let paths: Vec<_> = found.into_iter().filter_map(|(n, c, s, g)| Some((c, s, g, graph.cancellation(n)?))).collect();
+        let paths: Vec<_> = found
+            .into_iter()
+            .filter_map(|(n, c, s, g)| Some((c, s, g, graph.cancellation(n)?)))
+            .collect();
         drop(graph);
         paths
             .into_iter()
@@ -176,7 +184,12 @@ impl Worker {
             .collect()
     }
 
-    fn propose_refill(&mut self, (seed, faces): (Vertex, usize), (task, contact): Context, outcome: &mut Outcome) {
+    fn propose_refill(
+        &mut self,
+        (seed, faces): (Vertex, usize),
+        (task, contact): Context,
+        outcome: &mut Outcome,
+    ) {
         let limits = Limits { faces, partners: task.plan.partners as usize };
         let regions = self.clusters.around(&self.mesh, seed, limits);
         if let Some(largest) = regions.last() {
@@ -191,7 +204,13 @@ impl Worker {
     }
 
     /// The filling of a region that passes with the least growth of angles.
-    fn best_filling(&mut self, seed: Vertex, region: &Region, (task, contact): Context, outcome: &mut Outcome) -> Option<Proposal> {
+    fn best_filling(
+        &mut self,
+        seed: Vertex,
+        region: &Region,
+        (task, contact): Context,
+        outcome: &mut Outcome,
+    ) -> Option<Proposal> {
         let sweeps = task.gate.options.refill_sweeps + (region.faces.len() as f64).sqrt() as u32;
         let mut best: Option<Proposal> = None;
         for filling in fillings(region.rim.len(), &region.corners, task.plan.fillings as usize) {
@@ -203,26 +222,48 @@ impl Worker {
             let gain = region.irregularity - after;
             let edit = Edit::Refill(Refill::new(&self.mesh, region, filling));
             let found = self.attempt(seed, (gain, 0.0, edit), sweeps, (task, contact), outcome);
-            let better = |p: &Proposal| best.as_ref().is_none_or(|b| p.angle_growth < b.angle_growth);
+            let better =
+                |p: &Proposal| best.as_ref().is_none_or(|b| p.angle_growth < b.angle_growth);
             best = found.filter(better).or(best.take());
         }
         best
     }
 
     /// Makes an edit, has it judged, and undoes it.
-    fn attempt(&mut self, seed: Vertex, (gain, cost, edit): Candidate, sweeps: u32, (task, contact): Context, outcome: &mut Outcome) -> Option<Proposal> {
+    fn attempt(
+        &mut self,
+        seed: Vertex,
+        (gain, cost, edit): Candidate,
+        sweeps: u32,
+        (task, contact): Context,
+        outcome: &mut Outcome,
+    ) -> Option<Proposal> {
         let mark = self.mesh.mark();
         let (quads, planned) = (self.mesh.quads_alive(), self.mesh.quad_ids());
         edit.run(&mut self.mesh, planned).ok()?;
         let touched = self.mesh.touched_since(mark);
         let core = self.with_neighbours(&touched);
         let quads_added = self.mesh.quads_alive() - quads;
-        let judged = self.gate.judge(&mut self.mesh, mark, (&task.gate, contact), (sweeps, gain, task.lambda));
+        let judged = self.gate.judge(
+            &mut self.mesh,
+            mark,
+            (&task.gate, contact),
+            (sweeps, gain, task.lambda),
+        );
         let in_size = task.size.allows(&self.mesh, quads_added);
         match judged.and_then(|passed| in_size.then_some(passed).ok_or(Failure::Size)) {
-            Ok(Passed { angle_growth, distance_growth, moved }) => {
-                Some(Proposal { edit, seed, gain, cost, angle_growth, distance_growth, quads_added, touched, core, moved })
-            }
+            Ok(Passed { angle_growth, distance_growth, moved }) => Some(Proposal {
+                edit,
+                seed,
+                gain,
+                cost,
+                angle_growth,
+                distance_growth,
+                quads_added,
+                touched,
+                core,
+                moved,
+            }),
             Err(failure) => {
                 outcome.failures.push(failure);
                 outcome.scope.extend(touched.iter().filter(|&&v| v < self.mesh.vertex_ids()));

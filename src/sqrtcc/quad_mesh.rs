@@ -232,6 +232,7 @@ impl QuadMesh {
     }
 
     /// The half-edges out of `v`, counter-clockwise from [`Self::out`]. O(valence).
+    #[must_use]
     pub fn outgoing(&self, v: Vertex) -> Outgoing<'_> {
         let start = self.out(v);
         Outgoing { mesh: self, start, at: start }

@@ -28,7 +28,8 @@ impl QuadMesh {
         if !self.is_held(v) || !self.outgoing(v).any(|h| begins_sector(&h)) {
             return self.valence(v).abs_diff(4);
         }
-        let real = self.outgoing(v).filter(begins_sector).filter(|&h| !self.is_ghost(self.target(h)));
+        let real =
+            self.outgoing(v).filter(begins_sector).filter(|&h| !self.is_ghost(self.target(h)));
         real.map(|h| self.excess(h).unsigned_abs()).sum()
     }
 

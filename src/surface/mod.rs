@@ -13,7 +13,9 @@ mod tree;
 pub(crate) mod trial;
 mod triangulation;
 
-pub use features::{Crease, FeatureOptions, SharpLines, mean_edge, mesh_features, vertices_on_lines};
+pub use features::{
+    Crease, FeatureOptions, SharpLines, mean_edge, mesh_features, vertices_on_lines,
+};
 pub use reference::{Hit, Reference, SurfaceError};
 pub use samples::{Deviation, deviation, sample_triangles};
 pub use triangulation::{Triangulation, triangulate};
