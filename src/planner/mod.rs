@@ -28,6 +28,9 @@ knobs! {
         lambda_first: f64 = 40.0, in 0.0..=100_000.0, "degree-corners per element";
         /// Exchange rate of the last stage.
         lambda_last: f64 = 300.0, in 0.0..=100_000.0, "degree-corners per element";
+        /// What a T-junction may cost to be turned into a dual one (a triangle and a vertex of five
+        /// edges) at the end.
+        lambda_types: f64 = 150.0, in 0.0..=100_000.0, "degree-corners";
         /// Most rounds of moves, and most rounds of refills, in a stage.
         rounds: u32 = 30, in 0.0..=1000.0, "count";
         /// Irregular elements that are planned for in the same round are this far apart.

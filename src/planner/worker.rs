@@ -4,11 +4,12 @@ use super::clusters::{Clusters, Limits};
 use super::contact::Contact;
 use super::cost::CostOptions;
 use super::edit::{Edit, walk_terms};
-use super::gate::{Failure, Gate, Passed, Setting};
+use super::gate::{Failure, Gate, Passed, Setting, Shape};
 use super::movement::MovementGraph;
 use super::{PlanOptions, local};
 use crate::mesh::Point;
 use crate::moves::Dipole;
+use crate::ops::Op;
 use crate::patch::{Refill, Region, fillings};
 use crate::sqrtcc::{QuadMesh, Vertex};
 
@@ -25,6 +26,8 @@ pub struct Proposal {
     pub cost: f64,
     /// Growth of Σ |angle − ideal|, degrees.
     pub angle_growth: f64,
+    /// How well shaped its surroundings are.
+    pub shape: Shape,
     /// Growth of Σ squared distance of the probes, in squared units of the file.
     pub distance_growth: f64,
     /// Change of the number of quads of Q (edges of the polygon mesh).
@@ -35,6 +38,27 @@ pub struct Proposal {
     pub core: Vec<Vertex>,
     /// Where vertices go, and a triangle of the reference there.
     pub moved: Vec<(Vertex, Point, u32)>,
+}
+
+impl Proposal {
+    /// Where vertices go, on a mesh where new vertices get numbers from `first_new` on instead of
+    /// from `planned` on.
+    pub fn moved_to(&self, planned: u32, first_new: u32) -> impl Iterator<Item = (Vertex, Point, u32)> + '_ {
+        let number = move |v| if v >= planned { v - planned + first_new } else { v };
+        self.moved.iter().map(move |&(v, point, triangle)| (number(v), point, triangle))
+    }
+}
+
+/// Pairs of a face with five corners or more, among `vertices`, and an interior vertex of three
+/// edges at it, whether either is irregular in its place or not.
+fn t_junctions(mesh: &QuadMesh, vertices: &[Vertex]) -> usize {
+    let exists = |&&v: &&Vertex| v < mesh.vertex_ids() && mesh.is_alive(v);
+    let large = |&&f: &&Vertex| mesh.is_face(f) && !mesh.is_ghost(f) && mesh.valence(f) > 4;
+    let hanging = |v: &Vertex| {
+        mesh.valence(*v) == 3 && mesh.neighbours(*v).all(|f| !mesh.is_ghost(f))
+    };
+    let faces = vertices.iter().filter(exists).filter(large);
+    faces.map(|&f| mesh.neighbours(f).filter(hanging).count()).sum()
 }
 
 /// What came of looking for an edit.
@@ -53,6 +77,8 @@ pub struct Outcome {
 pub enum Stage {
     /// Local reductions and walks.
     Moves,
+    /// T-junctions turned into dual ones: a triangle is easier on the eye than a hanging vertex.
+    Types,
     /// Refills of patches of at most so many faces.
     Refills {
         /// Most faces.
@@ -105,6 +131,9 @@ pub struct Worker {
     clusters: Clusters,
 }
 
+/// Ways to resolve a T-junction that are judged.
+const MOST_TYPE_CHANGES: usize = 24;
+
 /// What is looked for, and where the mesh touches the reference.
 type Context<'a> = (&'a Task<'a>, &'a Contact);
 
@@ -122,6 +151,7 @@ impl Worker {
         let mut outcome = Outcome { scope: vec![seed], ..Outcome::default() };
         match task.stage {
             Stage::Moves => self.propose_move(seed, (task, contact), &mut outcome),
+            Stage::Types => self.propose_type_change(seed, (task, contact), &mut outcome),
             Stage::Refills { faces } => {
                 self.propose_refill((seed, faces), (task, contact), &mut outcome);
             }
@@ -151,6 +181,43 @@ impl Worker {
                 return;
             }
         }
+    }
+
+    /// The one or two operations at a face with a T-junction after which there are fewer, at the
+    /// same E, that cost the least.
+    fn propose_type_change(&mut self, seed: Vertex, context: Context, outcome: &mut Outcome) {
+        if !self.mesh.is_face(seed) || t_junctions(&self.mesh, &[seed]) == 0 {
+            return;
+        }
+        let mut near = vec![seed];
+        near.extend(self.mesh.neighbours(seed).filter(|&v| self.mesh.valence(v) == 3));
+        for depth in 1..=context.0.plan.depth {
+            let mut ways = Vec::new();
+            for &v in &near {
+                ways.extend(local::sequences(&mut self.mesh, v, depth, 0));
+            }
+            ways.retain(|(_, ops)| self.resolves_t_junction(ops));
+            for (_, ops) in ways.into_iter().take(MOST_TYPE_CHANGES) {
+                let edit = Edit::TypeChange { ops };
+                let sweeps = context.0.gate.options.sweeps;
+                let found = self.attempt(seed, (0, 1.0, edit), sweeps, context, outcome);
+                let best = outcome.proposal.as_ref().map_or(f64::INFINITY, |p| p.angle_growth);
+                outcome.proposal = found.filter(|p| p.angle_growth < best).or(outcome.proposal.take());
+            }
+            if outcome.proposal.is_some() {
+                return;
+            }
+        }
+    }
+
+    /// Whether the operations leave fewer T-junctions.
+    fn resolves_t_junction(&mut self, ops: &[Op]) -> bool {
+        let mark = self.mesh.mark();
+        let done = ops.iter().try_for_each(|op| op.run(&mut self.mesh).map(drop)).is_ok();
+        let around = self.with_neighbours(&self.mesh.touched_since(mark));
+        let after = t_junctions(&self.mesh, &around);
+        self.mesh.undo_to(mark);
+        done && after < t_junctions(&self.mesh, &around)
     }
 
     fn reductions(&mut self, seed: Vertex, plan: &PlanOptions) -> Vec<Candidate> {
@@ -248,16 +315,17 @@ impl Worker {
             &mut self.mesh,
             mark,
             (&task.gate, contact),
-            (sweeps, gain, task.lambda),
+            (sweeps, gain.max(1), task.lambda),
         );
         let in_size = task.size.allows(&self.mesh, quads_added);
         match judged.and_then(|passed| in_size.then_some(passed).ok_or(Failure::Size)) {
-            Ok(Passed { angle_growth, distance_growth, moved }) => Some(Proposal {
+            Ok(Passed { angle_growth, shape, distance_growth, moved }) => Some(Proposal {
                 edit,
                 seed,
                 gain,
                 cost,
                 angle_growth,
+                shape,
                 distance_growth,
                 quads_added,
                 touched,
