@@ -97,6 +97,21 @@ pub fn shape_of(mesh: &QuadMesh, faces: impl Iterator<Item = Vertex>) -> Shape {
     shape
 }
 
+/// An edit that did not pass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rejected {
+    /// Why.
+    pub failure: Failure,
+    /// The exchange rate at which it would have passed, as far as is known; infinite if none.
+    pub needs: f64,
+}
+
+impl From<Failure> for Rejected {
+    fn from(failure: Failure) -> Self {
+        Self { failure, needs: f64::INFINITY }
+    }
+}
+
 /// How well shaped some faces are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {
@@ -136,7 +151,7 @@ impl Gate {
         mark: Mark,
         (setting, contact): (&Setting, &Contact),
         (sweeps, worth, lambda): (u32, u32, f64),
-    ) -> Result<Passed, Failure> {
+    ) -> Result<Passed, Rejected> {
         let touched = mesh.touched_since(mark);
         self.gather(mesh, &touched, (setting, contact));
         // The patch holds a copy of the edited surroundings: the mesh can go back already.
@@ -145,27 +160,37 @@ impl Gate {
         let allowed = lambda * f64::from(worth);
         let quick = sweeps / 3;
         relax_local(&mut self.patch, setting.reference, setting.relax, quick);
-        if self.shape_after().angles - before.angles > 6.0 * allowed + 0.5 * before.angles {
-            return Err(Failure::Angles);
+        let too_steep = |growth: f64| Rejected {
+            failure: Failure::Angles,
+            needs: growth / f64::from(worth.max(1)),
+        };
+        let growth = self.shape_after().angles - before.angles - 0.5 * before.angles;
+        if growth > 6.0 * allowed {
+            return Err(too_steep(growth / 6.0));
         }
         relax_local(&mut self.patch, setting.reference, setting.relax, sweeps - quick);
         let after = self.shape_after();
         let least = setting.options.min_jacobian.min(before.jacobian);
         let more = after.inverted > before.inverted || after.deficit > before.deficit;
         if after.jacobian < least || more {
-            return Err(Failure::Jacobian);
+            return Err(Failure::Jacobian.into());
         }
         if after.angles - before.angles > allowed {
-            return Err(Failure::Angles);
+            return Err(too_steep(after.angles - before.angles));
         }
         let growth = self.uncovered(&touched, (setting, contact)).ok_or(Failure::Distance)?;
         if self.leaves_surface(setting) || growth > setting.growth * f64::from(worth) {
-            return Err(Failure::Distance);
+            return Err(Failure::Distance.into());
         }
         let places = self.vertices.iter().zip(0..).filter(|&(_, i)| self.free[i as usize]);
         let moved =
             places.map(|(&v, i)| (v, self.patch.point(i), self.patch.triangle(i))).collect();
-        Ok(Passed { angle_growth: after.angles - before.angles, shape: after, distance_growth: growth, moved })
+        Ok(Passed {
+            angle_growth: after.angles - before.angles,
+            shape: after,
+            distance_growth: growth,
+            moved,
+        })
     }
 
     /// The faces within some rings of what was touched; vertices all of whose faces are among

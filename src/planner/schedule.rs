@@ -8,12 +8,12 @@
 use super::contact::Contact;
 use super::edit::Edit;
 use super::gate::{Failure, shape_of};
-use super::worker::{Outcome, Proposal, Task, Worker};
+use super::worker::{Context, Outcome, Proposal, RefillKey, Task, Worker};
 use crate::mesh::Point;
 use crate::sqrtcc::{QuadMesh, Vertex};
 use crate::watch::{Phase, Watch};
 use rayon::prelude::*;
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -62,6 +62,8 @@ pub struct Schedule {
     /// What each vertex, as a seed, depended on when it last failed, and in which round.
     failed: BTreeMap<Vertex, (u32, Vec<Vertex>)>,
     round: u32,
+    /// Refills that failed, and the exchange rate at which they might have passed.
+    hopeless: FxHashMap<RefillKey, f64>,
     spacing: Spacing,
     /// What edits may still add to Σ squared distance of the probes.
     slack: f64,
@@ -82,6 +84,7 @@ impl Schedule {
             changed: Vec::new(),
             failed: BTreeMap::new(),
             round: 0,
+            hopeless: FxHashMap::default(),
             spacing: Spacing::default(),
             slack: 0.0,
             edits: Vec::new(),
@@ -119,6 +122,7 @@ impl Schedule {
             RoundRecord { lambda: task.lambda, seeds: seeds.len(), ..RoundRecord::default() };
         let mut proposals = Vec::new();
         for (seed, outcome) in seeds.into_iter().zip(outcomes) {
+            self.hopeless.extend(outcome.hopeless);
             for failure in outcome.failures {
                 *record.turned_down.entry(failure).or_default() += 1;
             }
@@ -159,6 +163,7 @@ impl Schedule {
         for worker in &self.workers {
             lock(worker).sync(mesh);
         }
+        let context = Context { task, contact, hopeless: &self.hopeless };
         let done = std::sync::atomic::AtomicUsize::new(0);
         let left = mesh.total_irregularity() as usize;
         seeds
@@ -170,7 +175,7 @@ impl Schedule {
                 }
                 let index = rayon::current_thread_index().map_or(0, |i| i + 1);
                 let outcome =
-                    lock(&self.workers[index % self.workers.len()]).propose(seed, task, contact);
+                    lock(&self.workers[index % self.workers.len()]).propose(seed, context);
                 let count = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
                 watch.progress(Phase::Plan, count, seeds.len(), Some(left));
                 outcome
@@ -207,7 +212,9 @@ impl Schedule {
                 continue;
             }
             let moved = proposal.moved_to(planned.0, first_new);
-            let moved: Vec<_> = moved.filter(|m| !(taken.contains(&m.0) && proposal.core.binary_search(&m.0).is_err())).collect();
+            let moved: Vec<_> = moved
+                .filter(|m| !(taken.contains(&m.0) && proposal.core.binary_search(&m.0).is_err()))
+                .collect();
             if !places(mesh, &proposal, &moved) {
                 mesh.undo_to(mark);
                 self.failed.insert(proposal.seed, (self.round, scope));
