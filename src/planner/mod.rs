@@ -23,9 +23,9 @@ knobs! {
     /// How edits are searched for.
     pub struct PlanOptions in "plan" {
         /// Stages, each with a larger exchange rate and larger patches.
-        stages: u32 = 5, in 0.0..=20.0, "count";
+        stages: u32 = 4, in 0.0..=20.0, "count";
         /// Exchange rate of the first stage.
-        lambda_first: f64 = 40.0, in 0.0..=100_000.0, "degree-corners per element";
+        lambda_first: f64 = 80.0, in 0.0..=100_000.0, "degree-corners per element";
         /// Exchange rate of the last stage.
         lambda_last: f64 = 1000.0, in 0.0..=100_000.0, "degree-corners per element";
         /// What a T-junction may cost to be turned into a dual one (a triangle and a vertex of five

@@ -8,7 +8,7 @@
 use super::contact::Contact;
 use super::edit::Edit;
 use super::gate::{Failure, shape_of};
-use super::worker::{Context, Outcome, Proposal, RefillKey, Task, Worker};
+use super::worker::{Context, FORGIVING, Outcome, Proposal, RefillKey, Stage, Task, Worker};
 use crate::mesh::Point;
 use crate::sqrtcc::{QuadMesh, Vertex};
 use crate::watch::{Phase, Watch};
@@ -53,14 +53,26 @@ pub struct RoundRecord {
     pub irregularity: u64,
 }
 
+/// A seed for which nothing was found.
+#[derive(Debug, Clone)]
+struct Failed {
+    round: u32,
+    /// Without a change here it will be the same again …
+    scope: Vec<Vertex>,
+    /// … until the exchange rate comes near this.
+    needs: f64,
+}
+
 /// The state of planning over all rounds.
 #[derive(Debug)]
 pub struct Schedule {
     workers: Vec<Mutex<Worker>>,
     /// The round in which the connectivity around a vertex last changed.
     changed: Vec<u32>,
-    /// What each vertex, as a seed, depended on when it last failed, and in which round.
-    failed: BTreeMap<Vertex, (u32, Vec<Vertex>)>,
+    /// Seeds for which moves were looked for in vain, over all stages.
+    without_moves: BTreeMap<Vertex, Failed>,
+    /// Seeds for which nothing else was found, in this stage.
+    failed: BTreeMap<Vertex, Failed>,
     round: u32,
     /// Refills that failed, and the exchange rate at which they might have passed.
     hopeless: FxHashMap<RefillKey, f64>,
@@ -82,6 +94,7 @@ impl Schedule {
         Self {
             workers,
             changed: Vec::new(),
+            without_moves: BTreeMap::new(),
             failed: BTreeMap::new(),
             round: 0,
             hopeless: FxHashMap::default(),
@@ -113,7 +126,7 @@ impl Schedule {
         watch: &dyn Watch,
     ) -> bool {
         self.round += 1;
-        let seeds = self.seeds(mesh, task.plan.spacing);
+        let seeds = self.seeds(mesh, task);
         if seeds.is_empty() {
             return false;
         }
@@ -128,7 +141,7 @@ impl Schedule {
             }
             match outcome.proposal {
                 Some(proposal) => proposals.push((proposal, outcome.scope)),
-                None => drop(self.failed.insert(seed, (self.round, outcome.scope))),
+                None => self.fail(seed, task, outcome.scope, outcome.needs),
             }
         }
         record.proposed = proposals.len();
@@ -140,17 +153,29 @@ impl Schedule {
 
     /// Irregular elements that have not failed, or around which something has changed since, and
     /// that are some steps apart: neighbours would mostly propose the same edit.
-    fn seeds(&mut self, mesh: &QuadMesh, spacing: u32) -> Vec<Vertex> {
+    fn seeds(&mut self, mesh: &QuadMesh, task: &Task) -> Vec<Vertex> {
         self.changed.resize(mesh.vertex_ids() as usize, 0);
-        let fresh = |v: &Vertex| {
-            self.failed.get(v).is_none_or(|(round, scope)| {
-                scope.iter().any(|&s| self.changed[s as usize] >= *round)
-            })
+        let is_changed = |f: &Failed| f.scope.iter().any(|&s| self.changed[s as usize] >= f.round);
+        let is_affordable = |f: &Failed| f.needs <= FORGIVING * task.lambda;
+        let fresh = |v: &Vertex| match task.stage {
+            Stage::Moves => {
+                let known = self.without_moves.get(v);
+                known.is_none_or(|f| is_changed(f) || is_affordable(f) && !self.failed.contains_key(v))
+            }
+            _ => self.failed.get(v).is_none_or(is_changed),
         };
         let irregular = mesh.vertices().filter(|&v| mesh.irregularity(v) > 0);
         let fresh: Vec<Vertex> = irregular.filter(fresh).collect();
         self.spacing.start(mesh);
-        fresh.into_iter().filter(|&v| self.spacing.take(mesh, v, spacing)).collect()
+        fresh.into_iter().filter(|&v| self.spacing.take(mesh, v, task.plan.spacing)).collect()
+    }
+
+    fn fail(&mut self, seed: Vertex, task: &Task, scope: Vec<Vertex>, needs: f64) {
+        let failed = Failed { round: self.round, scope, needs };
+        if task.stage == Stage::Moves {
+            self.without_moves.insert(seed, failed.clone());
+        }
+        self.failed.insert(seed, failed);
     }
 
     fn plan(
@@ -171,7 +196,7 @@ impl Schedule {
             .with_max_len(8)
             .map(|&seed| {
                 if watch.cancelled() {
-                    return Outcome::default();
+                    return Outcome::of(seed);
                 }
                 let index = rayon::current_thread_index().map_or(0, |i| i + 1);
                 let outcome =
@@ -204,7 +229,7 @@ impl Schedule {
                 continue;
             }
             if !self.affordable(mesh, &proposal, task) {
-                self.failed.insert(proposal.seed, (self.round, scope));
+                self.fail(proposal.seed, task, scope, 0.0);
                 continue;
             }
             let (first_new, mark) = (mesh.vertex_ids(), mesh.mark());
@@ -217,7 +242,7 @@ impl Schedule {
                 .collect();
             if !places(mesh, &proposal, &moved) {
                 mesh.undo_to(mark);
-                self.failed.insert(proposal.seed, (self.round, scope));
+                self.fail(proposal.seed, task, scope, 0.0);
                 continue;
             }
             for &(v, _, triangle) in &moved {

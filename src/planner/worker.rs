@@ -66,16 +66,32 @@ fn t_junctions(mesh: &QuadMesh, vertices: &[Vertex]) -> usize {
 }
 
 /// What came of looking for an edit.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Outcome {
     /// The best edit that passed.
     pub proposal: Option<Proposal>,
     /// Edits that the gate turned down.
     pub failures: Vec<Failure>,
+    /// The lowest exchange rate at which one of them might have passed.
+    pub needs: f64,
     /// Refills among them: what is refilled how, and at which exchange rate it might have passed.
     pub hopeless: Vec<(RefillKey, f64)>,
     /// Vertices on which the outcome depends: without a change there it will be the same.
     pub scope: Vec<Vertex>,
+}
+
+impl Outcome {
+    /// Nothing found yet around `seed`.
+    #[must_use]
+    pub fn of(seed: Vertex) -> Self {
+        Self {
+            proposal: None,
+            failures: Vec::new(),
+            needs: f64::INFINITY,
+            hopeless: Vec::new(),
+            scope: vec![seed],
+        }
+    }
 }
 
 /// Names a refill: a hash of its faces, and the number of the filling.
@@ -140,9 +156,9 @@ pub struct Worker {
     clusters: Clusters,
 }
 
-/// A refill that failed is tried again once the exchange rate comes this near to what it needed:
-/// the mesh has been smoothed since.
-const FORGIVING: f64 = 1.25;
+/// What failed is tried again once the exchange rate comes this near to what it needed: the mesh
+/// has been smoothed since.
+pub(super) const FORGIVING: f64 = 1.25;
 /// Ways to resolve a T-junction that are judged.
 const MOST_TYPE_CHANGES: usize = 24;
 
@@ -168,7 +184,7 @@ impl Worker {
 
     /// The best edit that begins with `seed`.
     pub fn propose(&mut self, seed: Vertex, context: Context) -> Outcome {
-        let mut outcome = Outcome { scope: vec![seed], ..Outcome::default() };
+        let mut outcome = Outcome::of(seed);
         match context.task.stage {
             Stage::Moves => self.propose_move(seed, context, &mut outcome),
             Stage::Types => self.propose_type_change(seed, context, &mut outcome),
@@ -365,6 +381,7 @@ impl Worker {
             }),
             Err(rejected) => {
                 outcome.failures.push(rejected.failure);
+                outcome.needs = outcome.needs.min(rejected.needs);
                 outcome.scope.extend(touched.iter().filter(|&&v| v < self.mesh.vertex_ids()));
                 Err(rejected.needs)
             }
