@@ -37,6 +37,8 @@ pub struct Automation<'a> {
 
 /// Samples each way for the distance before smoothing.
 const SAMPLES: usize = 20_000;
+/// Room for a budget that is met exactly: none at all and smoothing could only stand still.
+const HARDLY_MORE: f64 = 1.002;
 /// How many times its even share of the slack in distance an element may use up.
 const GREED: f64 = 4.0;
 
@@ -108,9 +110,11 @@ impl Automation<'_> {
             Reference::plain(&polygons.mesh).map(|m| deviation(&m, self.reference, SAMPLES));
         let start = start.unwrap_or_default();
         let share = self.smooth.budget;
+        // Where edits have used up the budget, smoothing must not make it worse.
+        let limit = |budget: f64, start: f64| (share * budget).max(HARDLY_MORE * start);
         let budget = Budget {
-            hausdorff: share * self.budget.hausdorff.max(start.hausdorff),
-            rms: share * self.budget.rms.max(start.rms),
+            hausdorff: limit(self.budget.hausdorff, start.hausdorff),
+            rms: limit(self.budget.rms, start.rms),
         };
         let (points, _) = smooth::smooth(
             &polygons.mesh,

@@ -160,7 +160,9 @@ impl Schedule {
         let fresh = |v: &Vertex| match task.stage {
             Stage::Moves => {
                 let known = self.without_moves.get(v);
-                known.is_none_or(|f| is_changed(f) || is_affordable(f) && !self.failed.contains_key(v))
+                known.is_none_or(|f| {
+                    is_changed(f) || is_affordable(f) && !self.failed.contains_key(v)
+                })
             }
             _ => self.failed.get(v).is_none_or(is_changed),
         };
