@@ -28,6 +28,8 @@ use toml::{Table, Value};
 pub const PRESETS: &[(&str, &str)] = &[
     ("default", include_str!("../../configs/default.toml")),
     ("balanced", include_str!("../../configs/balanced.toml")),
+    ("clean", include_str!("../../configs/clean.toml")),
+    ("gentle", include_str!("../../configs/gentle.toml")),
 ];
 
 /// A section as the configuration sees it.
