@@ -94,8 +94,9 @@ fn kind(edit: &Edit) -> String {
     match edit {
         Edit::Local { ops } => format!("local, {} op", ops.len()),
         Edit::Walk { cancellation, steps, .. } => {
-            format!("{cancellation:?}, {} steps", steps.len())
+            format!("{cancellation:?} cancellation, {} steps", steps.len())
         }
+        Edit::TypeChange { .. } => "type change".to_owned(),
         Edit::Refill(_) => "refill".to_owned(),
     }
 }

@@ -11,19 +11,20 @@ use super::Exit;
 pub(super) fn work(report: &Report) -> String {
     let mends = report.mends.mends.iter().map(|m| format!("mended: {}", m.sentence));
     let mut lines: Vec<String> = mends.collect();
-    let [local, walks, refills] = kinds(&report.edits);
+    let [local, walks, refills, types] = kinds(&report.edits);
     lines.push(match report.edits.len() {
         0 => "no edit found that improves the mesh".to_owned(),
         n => format!(
-            "edits made: {n} (local reductions {local}, walks {walks}, refilled patches {refills})"
+            "edits made: {n} (local reductions {local}, walks {walks}, refilled patches {refills}, \
+             type changes {types})"
         ),
     });
     lines.join("\n") + "\n"
 }
 
 /// How many edits of each kind there are.
-fn kinds(edits: &[EditRecord]) -> [usize; 3] {
-    let mut counts = [0; 3];
+fn kinds(edits: &[EditRecord]) -> [usize; 4] {
+    let mut counts = [0; 4];
     for record in edits {
         counts[kind(&record.edit)] += 1;
     }
@@ -35,6 +36,7 @@ fn kind(edit: &Edit) -> usize {
         Edit::Local { .. } => 0,
         Edit::Walk { .. } => 1,
         Edit::Refill(_) => 2,
+        Edit::TypeChange { .. } => 3,
     }
 }
 

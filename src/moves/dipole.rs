@@ -103,13 +103,13 @@ pub struct Stepped {
 }
 
 impl Dipole {
-    /// Whether a dislocation stands here: one edge too few at the origin, one too many at the
-    /// target, counted in the sectors that the half-edge lies in.
+    /// Whether a dislocation stands here: an edge too few at the origin, one too many at the
+    /// target (either may have more of it), counted in the sectors that the half-edge lies in.
     #[must_use]
     pub fn stands(self, mesh: &QuadMesh) -> bool {
         let (h, t) = (self.0, mesh.twin(self.0));
         let real = !mesh.is_ghost(mesh.origin(h)) && !mesh.is_ghost(mesh.origin(t));
-        real && mesh.excess(h) == -1 && mesh.excess(t) == 1
+        real && mesh.excess(h) <= -1 && mesh.excess(t) >= 1
     }
 
     /// Whether it is a T-junction (v3–f5) rather than a dual one (f3–v5).

@@ -7,6 +7,8 @@
 
 use crate::mesh::NONE;
 use crate::sqrtcc::{HalfEdge, QuadMesh, Vertex};
+use rustc_hash::FxBuildHasher;
+use std::hash::BuildHasher;
 
 /// A disk of faces with a convex rim, ready to be refilled.
 #[derive(Debug, Clone, Default)]
@@ -24,6 +26,16 @@ pub struct Region {
     pub irregularity: u32,
     /// Irregularity of the rim vertices once each has as many faces inside as its corner says.
     pub rim_irregularity_after: u32,
+}
+
+impl Region {
+    /// A number for the set of faces: equal for equal sets, and hardly ever otherwise.
+    #[must_use]
+    pub fn key(&self) -> u64 {
+        let mut faces = self.faces.clone();
+        faces.sort_unstable();
+        FxBuildHasher.hash_one(faces)
+    }
 }
 
 /// Grows regions; keeps its arrays from one to the next.

@@ -114,11 +114,11 @@ pub fn fillings(n: usize, corners: &[usize], most: usize) -> Vec<Filling> {
     }
 }
 
-/// Twice the spoke lengths; `None` unless all are positive (and a grid closes).
-fn double_spokes(sides: &[u32]) -> Option<Vec<u32>> {
+/// Twice the spoke lengths; `None` unless all are positive.
+fn double_spokes(sides: &[u32]) -> Option<smallvec::SmallVec<[u32; 5]>> {
     let k = sides.len();
     let a = |i: usize, by: usize| i64::from(sides[(i + by) % k]);
-    let doubled: Vec<i64> = match k {
+    let doubled: smallvec::SmallVec<[i64; 5]> = match k {
         3 => (0..3).map(|i| a(i, 1) + a(i, 2) - a(i, 0)).collect(),
         5 => (0..5).map(|i| a(i, 0) + a(i, 1) + a(i, 4) - a(i, 2) - a(i, 3)).collect(),
         _ => return None,
@@ -359,8 +359,7 @@ impl Chord {
     }
 }
 
-/// The best chords: both parts must be simple, and the shorter their longest spoke is relative to
-/// the shortest, the better.
+/// The best chords: both parts must be simple, and the more even their spokes, the better.
 fn chords(polygon: &Polygon, most: usize) -> Vec<Chord> {
     let sides = polygon.sides();
     let k = sides.len();
@@ -371,13 +370,13 @@ fn chords(polygon: &Polygon, most: usize) -> Vec<Chord> {
     };
     let mut scored = Vec::new();
     for (from, to) in pairs {
-        for start in 1..sides[from] {
-            for end in 1..sides[to] {
-                let apart = sides[from] - start + end;
-                for length in 1..=apart.max(2) + 2 {
-                    let chord = Chord { from, start, to, end, length };
-                    let [one, other] = chord.parts(&sides);
-                    if let (Some(a), Some(b)) = (double_spokes(&one), double_spokes(&other)) {
+        for start in (1..sides[from]).step_by(stride(sides[from])) {
+            for end in (1..sides[to]).step_by(stride(sides[to])) {
+                let parts = Chord { from, start, to, end, length: 0 }.parts(&sides);
+                for length in lengths(&parts) {
+                    let spokes = parts.each_ref().map(|part| with_last(part, length));
+                    if let [Some(a), Some(b)] = spokes.map(|part| double_spokes(&part)) {
+                        let chord = Chord { from, start, to, end, length };
                         scored.push((imbalance(&a, &b, length), chord));
                     }
                 }
@@ -386,6 +385,37 @@ fn chords(polygon: &Polygon, most: usize) -> Vec<Chord> {
     }
     scored.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
     distinct(scored, most)
+}
+
+/// Long sides are tried at some twenty places only.
+fn stride(side: u32) -> usize {
+    (side as usize / 20).max(1)
+}
+
+/// The lengths of the chord, whose place in `parts` is the last, for which both parts can have
+/// positive spokes: in a triangle less than the sum of the other sides and more than their
+/// difference, and likewise in a pentagon.
+fn lengths(parts: &[Vec<u32>; 2]) -> std::ops::Range<u32> {
+    let (mut least, mut most) = (1, u32::MAX);
+    for part in parts {
+        let a = |i: usize| i64::from(part[i]);
+        let (low, high) = if part.len() == 3 {
+            ((a(0) - a(1)).abs() + 1, a(0) + a(1))
+        } else {
+            // Spokes 1 and 2 shrink with the length of side 4, the others grow.
+            let high = (a(1) + a(2) + a(0) - a(3)).min(a(2) + a(3) + a(1) - a(0));
+            let low =
+                [a(1) + a(2) - a(0) - a(3), a(1) + a(0) - a(3) - a(2), a(2) + a(3) - a(0) - a(1)];
+            (low.into_iter().max().unwrap_or(0) + 1, high)
+        };
+        (least, most) = (least.max(low.max(1) as u32), most.min(high.max(1) as u32));
+    }
+    least..most
+}
+
+/// The side lengths with the chord as the last.
+fn with_last(part: &[u32], length: u32) -> smallvec::SmallVec<[u32; 5]> {
+    part[..part.len() - 1].iter().copied().chain([length]).collect()
 }
 
 /// How uneven a pair of parts is: the mean squared deviation of the spokes from their mean, plus

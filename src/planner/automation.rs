@@ -62,6 +62,10 @@ impl Automation<'_> {
                 self.smooth(mesh, self.plan.smooth_between, watch)?;
             }
         }
+        contact.attach(mesh, self.reference)?;
+        schedule.restart(allowed - contact.squared_distances());
+        let types = (Stage::Types, self.plan.lambda_types, size);
+        self.rounds((mesh, &mut contact), &mut schedule, types, watch);
         self.smooth(mesh, self.smooth.iterations, watch)?;
         Ok(schedule)
     }

@@ -17,6 +17,11 @@ pub enum Edit {
         /// The operations.
         ops: Vec<Op>,
     },
+    /// A T-junction turns into a dual one, or away from the face it hangs in.
+    TypeChange {
+        /// The operations.
+        ops: Vec<Op>,
+    },
     /// A dislocation walks until it is absorbed.
     Walk {
         /// What absorbs it.
@@ -47,7 +52,7 @@ impl Edit {
     pub fn run(&self, mesh: &mut QuadMesh, planned: u32) -> Result<(), Refusal> {
         let mark = mesh.mark();
         let done = match self {
-            Self::Local { ops } => {
+            Self::Local { ops } | Self::TypeChange { ops } => {
                 let to = 4 * mesh.quad_ids();
                 ops.iter().try_for_each(|op| op.rebased(4 * planned, to).run(mesh).map(|_| ()))
             }

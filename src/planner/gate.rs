@@ -62,6 +62,8 @@ pub struct Setting<'a> {
 pub struct Passed {
     /// Growth of Σ |angle − ideal| over all corners of the region, degrees.
     pub angle_growth: f64,
+    /// How well shaped the region is.
+    pub shape: Shape,
     /// Growth of Σ squared distance of the probes of the region; may be negative.
     pub distance_growth: f64,
     /// Where the free vertices of the region are now, and a triangle of the reference there.
@@ -82,14 +84,49 @@ pub enum Failure {
     Size,
 }
 
+/// The shape of some faces of the mesh, each quad against its own normal.
+#[must_use]
+pub fn shape_of(mesh: &QuadMesh, faces: impl Iterator<Item = Vertex>) -> Shape {
+    let mut shape = Shape::default();
+    let mut points: SmallVec<[Point; 8]> = SmallVec::new();
+    for f in faces {
+        points.clear();
+        points.extend(mesh.neighbours(f).map(|v| mesh.position(v)));
+        shape.add(&points, &Vector::zeros());
+    }
+    shape
+}
+
+/// An edit that did not pass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rejected {
+    /// Why.
+    pub failure: Failure,
+    /// The exchange rate at which it would have passed, as far as is known; infinite if none.
+    pub needs: f64,
+}
+
+impl From<Failure> for Rejected {
+    fn from(failure: Failure) -> Self {
+        Self { failure, needs: f64::INFINITY }
+    }
+}
+
 /// How well shaped some faces are.
-#[derive(Debug, Clone, Copy)]
-struct Shape {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shape {
     /// Σ |angle − ideal| over corners, degrees.
     angles: f64,
     /// Least scaled Jacobian of the quads, against the reference.
     jacobian: f64,
+    /// Quads that are turned over somewhere.
+    inverted: u32,
+    /// Σ over quads of what their scaled Jacobian lacks to [`POOR`].
+    deficit: f64,
 }
+
+/// Quads below this scaled Jacobian must not become worse all together.
+const POOR: f64 = 0.2;
 
 /// Judges edits; keeps its arrays from one to the next.
 #[derive(Debug, Clone, Default)]
@@ -106,42 +143,54 @@ pub struct Gate {
 }
 
 impl Gate {
-    /// Judges what was done to `mesh` since `mark`, `gain` elements removed at λ degrees each.
+    /// Judges what was done to `mesh` since `mark`, worth so many elements at λ degrees each.
     /// The mesh is as before the edit afterwards: a caller that wants it makes it again.
     pub fn judge(
         &mut self,
         mesh: &mut QuadMesh,
         mark: Mark,
         (setting, contact): (&Setting, &Contact),
-        (sweeps, gain, lambda): (u32, u32, f64),
-    ) -> Result<Passed, Failure> {
+        (sweeps, worth, lambda): (u32, u32, f64),
+    ) -> Result<Passed, Rejected> {
         let touched = mesh.touched_since(mark);
         self.gather(mesh, &touched, (setting, contact));
         // The patch holds a copy of the edited surroundings: the mesh can go back already.
         mesh.undo_to(mark);
         let before = self.shape_before(mesh, &touched, (setting, contact));
-        let allowed = lambda * f64::from(gain);
+        let allowed = lambda * f64::from(worth);
         let quick = sweeps / 3;
         relax_local(&mut self.patch, setting.reference, setting.relax, quick);
-        if self.shape_after().angles - before.angles > 6.0 * allowed + 0.5 * before.angles {
-            return Err(Failure::Angles);
+        let too_steep = |growth: f64| Rejected {
+            failure: Failure::Angles,
+            needs: growth / f64::from(worth.max(1)),
+        };
+        let growth = self.shape_after().angles - before.angles - 0.5 * before.angles;
+        if growth > 6.0 * allowed {
+            return Err(too_steep(growth / 6.0));
         }
         relax_local(&mut self.patch, setting.reference, setting.relax, sweeps - quick);
         let after = self.shape_after();
-        if after.jacobian < setting.options.min_jacobian.min(before.jacobian) {
-            return Err(Failure::Jacobian);
+        let least = setting.options.min_jacobian.min(before.jacobian);
+        let more = after.inverted > before.inverted || after.deficit > before.deficit;
+        if after.jacobian < least || more {
+            return Err(Failure::Jacobian.into());
         }
         if after.angles - before.angles > allowed {
-            return Err(Failure::Angles);
+            return Err(too_steep(after.angles - before.angles));
         }
         let growth = self.uncovered(&touched, (setting, contact)).ok_or(Failure::Distance)?;
-        if self.leaves_surface(setting) || growth > setting.growth * f64::from(gain) {
-            return Err(Failure::Distance);
+        if self.leaves_surface(setting) || growth > setting.growth * f64::from(worth) {
+            return Err(Failure::Distance.into());
         }
         let places = self.vertices.iter().zip(0..).filter(|&(_, i)| self.free[i as usize]);
         let moved =
             places.map(|(&v, i)| (v, self.patch.point(i), self.patch.triangle(i))).collect();
-        Ok(Passed { angle_growth: after.angles - before.angles, distance_growth: growth, moved })
+        Ok(Passed {
+            angle_growth: after.angles - before.angles,
+            shape: after,
+            distance_growth: growth,
+            moved,
+        })
     }
 
     /// The faces within some rings of what was touched; vertices all of whose faces are among
@@ -333,11 +382,19 @@ impl Ball {
 
 impl Default for Shape {
     fn default() -> Self {
-        Self { angles: 0.0, jacobian: 1.0 }
+        Self { angles: 0.0, jacobian: 1.0, inverted: 0, deficit: 0.0 }
     }
 }
 
 impl Shape {
+    /// Whether there is nothing worse among the quads than in `other`, give or take a little.
+    #[must_use]
+    pub fn is_about_as_good_as(&self, other: &Self) -> bool {
+        self.inverted <= other.inverted
+            && self.deficit <= other.deficit + 0.02
+            && self.jacobian >= 0.6 * other.jacobian.max(0.0).min(POOR)
+    }
+
     /// Adds a face; `up` decides which way round a quad is meant to be.
     fn add(&mut self, points: &[Point], up: &Vector) {
         let n = points.len();
@@ -350,6 +407,7 @@ impl Shape {
                 .sum::<Vector>()
         };
         let along = if normal.dot(up) < 0.0 { -1.0 } else { 1.0 };
+        let mut least: f64 = 1.0;
         let unit = normal.try_normalize(0.0).unwrap_or_else(Vector::zeros);
         for i in 0..n {
             let to_next = points[(i + 1) % n] - points[i];
@@ -366,8 +424,11 @@ impl Shape {
             self.angles += (angle - ideal).abs();
             if n == 4 {
                 let jacobian = if scale > 0.0 { along * sine } else { -1.0 };
-                self.jacobian = self.jacobian.min(jacobian);
+                least = least.min(jacobian);
             }
         }
+        self.jacobian = self.jacobian.min(least);
+        self.inverted += u32::from(least < 0.0);
+        self.deficit += (POOR - least).max(0.0);
     }
 }

@@ -6,16 +6,19 @@ use crate::sqrtcc::{HalfEdge, QuadMesh, Vertex};
 /// The sequences of one operation near `seed` that lower E, or else of two; best first.
 /// `mesh` is as before afterwards. O(valence²) probes for one operation, squared for two.
 pub fn reductions(mesh: &mut QuadMesh, seed: Vertex, depth: u32) -> Vec<(i32, Vec<Op>)> {
+    let found = sequences(mesh, seed, 1, -1);
+    if found.is_empty() && depth >= 2 { sequences(mesh, seed, 2, -1) } else { found }
+}
+
+/// The sequences of `depth` operations (one or two) near `seed` that change E by at most `most`;
+/// best first. `mesh` is as before afterwards.
+pub fn sequences(mesh: &mut QuadMesh, seed: Vertex, depth: u32, most: i32) -> Vec<(i32, Vec<Op>)> {
     let mut found = Vec::new();
-    let near = operations(mesh, seed);
-    for &op in &near {
-        if let Some(delta) = op.check(mesh).ok().map(|l| l.delta()).filter(|&d| d < 0) {
+    for op in operations(mesh, seed) {
+        if depth >= 2 {
+            pairs(mesh, op, most, &mut found);
+        } else if let Some(delta) = op.check(mesh).ok().map(|l| l.delta()).filter(|&d| d <= most) {
             found.push((delta, vec![op]));
-        }
-    }
-    if found.is_empty() && depth >= 2 {
-        for &op in &near {
-            pairs(mesh, op, &mut found);
         }
     }
     found.sort();
@@ -24,7 +27,7 @@ pub fn reductions(mesh: &mut QuadMesh, seed: Vertex, depth: u32) -> Vec<(i32, Ve
 }
 
 /// Extends `first` by every second operation around what it touched.
-fn pairs(mesh: &mut QuadMesh, first: Op, found: &mut Vec<(i32, Vec<Op>)>) {
+fn pairs(mesh: &mut QuadMesh, first: Op, most: i32, found: &mut Vec<(i32, Vec<Op>)>) {
     let mark = mesh.mark();
     // A first operation that costs four cannot be made good by one more.
     let Some(legal) = first.check(mesh).ok().filter(|l| l.delta() <= 2) else { return };
@@ -36,7 +39,7 @@ fn pairs(mesh: &mut QuadMesh, first: Op, found: &mut Vec<(i32, Vec<Op>)>) {
         }
         for second in operations(mesh, v) {
             let delta = second.check(mesh).ok().map(|legal| cost + legal.delta());
-            if let Some(delta) = delta.filter(|&d| d < 0) {
+            if let Some(delta) = delta.filter(|&d| d <= most) {
                 found.push((delta, vec![first, second]));
             }
         }

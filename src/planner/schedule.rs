@@ -7,12 +7,13 @@
 
 use super::contact::Contact;
 use super::edit::Edit;
-use super::gate::Failure;
-use super::worker::{Outcome, Proposal, Task, Worker};
+use super::gate::{Failure, shape_of};
+use super::worker::{Context, Outcome, Proposal, RefillKey, Task, Worker};
 use crate::mesh::Point;
 use crate::sqrtcc::{QuadMesh, Vertex};
 use crate::watch::{Phase, Watch};
 use rayon::prelude::*;
+use rustc_hash::{FxHashMap, FxHashSet};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -61,6 +62,8 @@ pub struct Schedule {
     /// What each vertex, as a seed, depended on when it last failed, and in which round.
     failed: BTreeMap<Vertex, (u32, Vec<Vertex>)>,
     round: u32,
+    /// Refills that failed, and the exchange rate at which they might have passed.
+    hopeless: FxHashMap<RefillKey, f64>,
     spacing: Spacing,
     /// What edits may still add to Σ squared distance of the probes.
     slack: f64,
@@ -81,6 +84,7 @@ impl Schedule {
             changed: Vec::new(),
             failed: BTreeMap::new(),
             round: 0,
+            hopeless: FxHashMap::default(),
             spacing: Spacing::default(),
             slack: 0.0,
             edits: Vec::new(),
@@ -118,11 +122,12 @@ impl Schedule {
             RoundRecord { lambda: task.lambda, seeds: seeds.len(), ..RoundRecord::default() };
         let mut proposals = Vec::new();
         for (seed, outcome) in seeds.into_iter().zip(outcomes) {
+            self.hopeless.extend(outcome.hopeless);
             for failure in outcome.failures {
                 *record.turned_down.entry(failure).or_default() += 1;
             }
             match outcome.proposal {
-                Some(proposal) => proposals.push(proposal),
+                Some(proposal) => proposals.push((proposal, outcome.scope)),
                 None => drop(self.failed.insert(seed, (self.round, outcome.scope))),
             }
         }
@@ -158,6 +163,7 @@ impl Schedule {
         for worker in &self.workers {
             lock(worker).sync(mesh);
         }
+        let context = Context { task, contact, hopeless: &self.hopeless };
         let done = std::sync::atomic::AtomicUsize::new(0);
         let left = mesh.total_irregularity() as usize;
         seeds
@@ -169,7 +175,7 @@ impl Schedule {
                 }
                 let index = rayon::current_thread_index().map_or(0, |i| i + 1);
                 let outcome =
-                    lock(&self.workers[index % self.workers.len()]).propose(seed, task, contact);
+                    lock(&self.workers[index % self.workers.len()]).propose(seed, context);
                 let count = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
                 watch.progress(Phase::Plan, count, seeds.len(), Some(left));
                 outcome
@@ -181,29 +187,46 @@ impl Schedule {
     fn commit(
         &mut self,
         (mesh, contact): (&mut QuadMesh, &mut Contact),
-        mut proposals: Vec<Proposal>,
+        mut proposals: Vec<(Proposal, Vec<Vertex>)>,
         task: &Task,
     ) -> usize {
-        proposals.sort_by(|a, b| {
+        proposals.sort_by(|(a, _), (b, _)| {
             let value = |p: &Proposal| f64::from(p.gain) * task.lambda.max(1.0) - p.angle_growth;
             b.gain.cmp(&a.gain).then(value(b).total_cmp(&value(a))).then(a.seed.cmp(&b.seed))
         });
         let planned = (mesh.vertex_ids(), mesh.quad_ids());
-        let mut moved_in_round = vec![false; planned.0 as usize];
+        // Vertices that an edit of this round has moved; others leave them unless they must not.
+        let mut taken = FxHashSet::default();
         let mut made = 0;
-        for proposal in proposals {
+        for (proposal, scope) in proposals {
             let free = |&v: &Vertex| v >= planned.0 || self.changed[v as usize] < self.round;
-            if !proposal.touched.iter().all(free) || !self.affordable(mesh, &proposal, task) {
+            if !proposal.touched.iter().all(free) {
+                continue;
+            }
+            if !self.affordable(mesh, &proposal, task) {
+                self.failed.insert(proposal.seed, (self.round, scope));
                 continue;
             }
             let (first_new, mark) = (mesh.vertex_ids(), mesh.mark());
-            if makes(mesh, &proposal, planned.1) {
-                self.slack -= proposal.distance_growth;
-                self.place((mesh, contact), &proposal, (planned.0, first_new), &mut moved_in_round);
-                contact.reassign(mesh, &mesh.touched_since(mark), &proposal.core);
-                self.record(proposal);
-                made += 1;
+            if !makes(mesh, &proposal, planned.1) {
+                continue;
             }
+            let moved = proposal.moved_to(planned.0, first_new);
+            let moved: Vec<_> = moved
+                .filter(|m| !(taken.contains(&m.0) && proposal.core.binary_search(&m.0).is_err()))
+                .collect();
+            if !places(mesh, &proposal, &moved) {
+                mesh.undo_to(mark);
+                self.failed.insert(proposal.seed, (self.round, scope));
+                continue;
+            }
+            for &(v, _, triangle) in &moved {
+                contact.set_near(v, triangle);
+                taken.insert(v);
+            }
+            contact.reassign(mesh, &mesh.touched_since(mark), &proposal.core);
+            self.record(proposal, planned.0);
+            made += 1;
         }
         mesh.commit();
         made
@@ -215,34 +238,11 @@ impl Schedule {
         near && task.size.allows(mesh, proposal.quads_added)
     }
 
-    /// Moves vertices to where they relaxed: the changed ones, and those around them that no
-    /// earlier edit of the round has moved.
-    fn place(
-        &mut self,
-        (mesh, contact): (&mut QuadMesh, &mut Contact),
-        proposal: &Proposal,
-        (planned, first_new): (u32, u32),
-        moved: &mut [bool],
-    ) {
-        for &v in &proposal.core {
-            if v < planned {
-                self.changed[v as usize] = self.round;
-            }
+    fn record(&mut self, proposal: Proposal, planned: u32) {
+        self.slack -= proposal.distance_growth;
+        for &v in proposal.core.iter().filter(|&&v| v < planned) {
+            self.changed[v as usize] = self.round;
         }
-        for &(v, point, triangle) in &proposal.moved {
-            if v >= planned {
-                let v = v - planned + first_new;
-                mesh.set_position(v, point);
-                contact.set_near(v, triangle);
-            } else if !moved[v as usize] || proposal.core.binary_search(&v).is_ok() {
-                moved[v as usize] = true;
-                mesh.set_position(v, point);
-                contact.set_near(v, triangle);
-            }
-        }
-    }
-
-    fn record(&mut self, proposal: Proposal) {
         let place = proposal.moved.first().map_or_else(Point::origin, |m| m.1);
         self.edits.push(EditRecord {
             round: self.round,
@@ -275,6 +275,19 @@ fn makes(mesh: &mut QuadMesh, proposal: &Proposal, planned: u32) -> bool {
         mesh.undo_to(mark);
     }
     as_planned
+}
+
+/// Moves vertices to where they relaxed; whether the quads there are then about as good as when
+/// the edit was judged by itself.
+fn places(mesh: &mut QuadMesh, proposal: &Proposal, moved: &[(Vertex, Point, u32)]) -> bool {
+    for &(v, point, _) in moved {
+        mesh.set_position(v, point);
+    }
+    let around = moved.iter().flat_map(|m| mesh.neighbours(m.0));
+    let mut faces: Vec<Vertex> = around.filter(|&f| !mesh.is_ghost(f)).collect();
+    faces.sort_unstable();
+    faces.dedup();
+    shape_of(mesh, faces.into_iter()).is_about_as_good_as(&proposal.shape)
 }
 
 /// Keeps chosen vertices apart.

@@ -4,13 +4,15 @@ use super::clusters::{Clusters, Limits};
 use super::contact::Contact;
 use super::cost::CostOptions;
 use super::edit::{Edit, walk_terms};
-use super::gate::{Failure, Gate, Passed, Setting};
+use super::gate::{Failure, Gate, Passed, Setting, Shape};
 use super::movement::MovementGraph;
 use super::{PlanOptions, local};
 use crate::mesh::Point;
 use crate::moves::Dipole;
+use crate::ops::Op;
 use crate::patch::{Refill, Region, fillings};
 use crate::sqrtcc::{QuadMesh, Vertex};
+use rustc_hash::FxHashMap;
 
 /// An edit that passed the gate, not yet made.
 #[derive(Debug, Clone)]
@@ -25,6 +27,8 @@ pub struct Proposal {
     pub cost: f64,
     /// Growth of Σ |angle − ideal|, degrees.
     pub angle_growth: f64,
+    /// How well shaped its surroundings are.
+    pub shape: Shape,
     /// Growth of Σ squared distance of the probes, in squared units of the file.
     pub distance_growth: f64,
     /// Change of the number of quads of Q (edges of the polygon mesh).
@@ -37,6 +41,30 @@ pub struct Proposal {
     pub moved: Vec<(Vertex, Point, u32)>,
 }
 
+impl Proposal {
+    /// Where vertices go, on a mesh where new vertices get numbers from `first_new` on instead of
+    /// from `planned` on.
+    pub fn moved_to(
+        &self,
+        planned: u32,
+        first_new: u32,
+    ) -> impl Iterator<Item = (Vertex, Point, u32)> + '_ {
+        let number = move |v| if v >= planned { v - planned + first_new } else { v };
+        self.moved.iter().map(move |&(v, point, triangle)| (number(v), point, triangle))
+    }
+}
+
+/// Pairs of a face with five corners or more, among `vertices`, and an interior vertex of three
+/// edges at it, whether either is irregular in its place or not.
+fn t_junctions(mesh: &QuadMesh, vertices: &[Vertex]) -> usize {
+    let exists = |&&v: &&Vertex| v < mesh.vertex_ids() && mesh.is_alive(v);
+    let large = |&&f: &&Vertex| mesh.is_face(f) && !mesh.is_ghost(f) && mesh.valence(f) > 4;
+    let hanging =
+        |v: &Vertex| mesh.valence(*v) == 3 && mesh.neighbours(*v).all(|f| !mesh.is_ghost(f));
+    let faces = vertices.iter().filter(exists).filter(large);
+    faces.map(|&f| mesh.neighbours(f).filter(hanging).count()).sum()
+}
+
 /// What came of looking for an edit.
 #[derive(Debug, Clone, Default)]
 pub struct Outcome {
@@ -44,15 +72,22 @@ pub struct Outcome {
     pub proposal: Option<Proposal>,
     /// Edits that the gate turned down.
     pub failures: Vec<Failure>,
+    /// Refills among them: what is refilled how, and at which exchange rate it might have passed.
+    pub hopeless: Vec<(RefillKey, f64)>,
     /// Vertices on which the outcome depends: without a change there it will be the same.
     pub scope: Vec<Vertex>,
 }
+
+/// Names a refill: a hash of its faces, and the number of the filling.
+pub type RefillKey = (u64, usize);
 
 /// What is looked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Stage {
     /// Local reductions and walks.
     Moves,
+    /// T-junctions turned into dual ones: a triangle is easier on the eye than a hanging vertex.
+    Types,
     /// Refills of patches of at most so many faces.
     Refills {
         /// Most faces.
@@ -105,8 +140,22 @@ pub struct Worker {
     clusters: Clusters,
 }
 
-/// What is looked for, and where the mesh touches the reference.
-type Context<'a> = (&'a Task<'a>, &'a Contact);
+/// A refill that failed is tried again once the exchange rate comes this near to what it needed:
+/// the mesh has been smoothed since.
+const FORGIVING: f64 = 1.25;
+/// Ways to resolve a T-junction that are judged.
+const MOST_TYPE_CHANGES: usize = 24;
+
+/// What is known while planning.
+#[derive(Debug, Clone, Copy)]
+pub struct Context<'a> {
+    /// What is looked for.
+    pub task: &'a Task<'a>,
+    /// Where the mesh touches the reference.
+    pub contact: &'a Contact,
+    /// Refills that are known to fail.
+    pub hopeless: &'a FxHashMap<RefillKey, f64>,
+}
 
 /// A candidate: elements fewer, cost, edit.
 type Candidate = (u32, f64, Edit);
@@ -118,12 +167,13 @@ impl Worker {
     }
 
     /// The best edit that begins with `seed`.
-    pub fn propose(&mut self, seed: Vertex, task: &Task, contact: &Contact) -> Outcome {
+    pub fn propose(&mut self, seed: Vertex, context: Context) -> Outcome {
         let mut outcome = Outcome { scope: vec![seed], ..Outcome::default() };
-        match task.stage {
-            Stage::Moves => self.propose_move(seed, (task, contact), &mut outcome),
+        match context.task.stage {
+            Stage::Moves => self.propose_move(seed, context, &mut outcome),
+            Stage::Types => self.propose_type_change(seed, context, &mut outcome),
             Stage::Refills { faces } => {
-                self.propose_refill((seed, faces), (task, contact), &mut outcome);
+                self.propose_refill((seed, faces), context, &mut outcome);
             }
         }
         outcome.scope.sort_unstable();
@@ -131,7 +181,8 @@ impl Worker {
         outcome
     }
 
-    fn propose_move(&mut self, seed: Vertex, (task, contact): Context, outcome: &mut Outcome) {
+    fn propose_move(&mut self, seed: Vertex, context: Context, outcome: &mut Outcome) {
+        let task = context.task;
         let mut candidates = self.reductions(seed, task.plan);
         let handles: Vec<Dipole> = self
             .mesh
@@ -145,12 +196,49 @@ impl Worker {
         candidates.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.total_cmp(&b.1)));
         for candidate in candidates.into_iter().take(task.plan.tries as usize) {
             let sweeps = task.gate.options.sweeps;
-            if let Some(proposal) = self.attempt(seed, candidate, sweeps, (task, contact), outcome)
-            {
+            if let Ok(proposal) = self.attempt(seed, candidate, sweeps, context, outcome) {
                 outcome.proposal = Some(proposal);
                 return;
             }
         }
+    }
+
+    /// The one or two operations at a face with a T-junction after which there are fewer, at the
+    /// same E, that cost the least.
+    fn propose_type_change(&mut self, seed: Vertex, context: Context, outcome: &mut Outcome) {
+        if !self.mesh.is_face(seed) || t_junctions(&self.mesh, &[seed]) == 0 {
+            return;
+        }
+        let mut near = vec![seed];
+        near.extend(self.mesh.neighbours(seed).filter(|&v| self.mesh.valence(v) == 3));
+        for depth in 1..=context.task.plan.depth {
+            let mut ways = Vec::new();
+            for &v in &near {
+                ways.extend(local::sequences(&mut self.mesh, v, depth, 0));
+            }
+            ways.retain(|(_, ops)| self.resolves_t_junction(ops));
+            for (_, ops) in ways.into_iter().take(MOST_TYPE_CHANGES) {
+                let edit = Edit::TypeChange { ops };
+                let sweeps = context.task.gate.options.sweeps;
+                let found = self.attempt(seed, (0, 1.0, edit), sweeps, context, outcome).ok();
+                let best = outcome.proposal.as_ref().map_or(f64::INFINITY, |p| p.angle_growth);
+                outcome.proposal =
+                    found.filter(|p| p.angle_growth < best).or(outcome.proposal.take());
+            }
+            if outcome.proposal.is_some() {
+                return;
+            }
+        }
+    }
+
+    /// Whether the operations leave fewer T-junctions.
+    fn resolves_t_junction(&mut self, ops: &[Op]) -> bool {
+        let mark = self.mesh.mark();
+        let done = ops.iter().try_for_each(|op| op.run(&mut self.mesh).map(drop)).is_ok();
+        let around = self.with_neighbours(&self.mesh.touched_since(mark));
+        let after = t_junctions(&self.mesh, &around);
+        self.mesh.undo_to(mark);
+        done && after < t_junctions(&self.mesh, &around)
     }
 
     fn reductions(&mut self, seed: Vertex, plan: &PlanOptions) -> Vec<Candidate> {
@@ -187,16 +275,16 @@ impl Worker {
     fn propose_refill(
         &mut self,
         (seed, faces): (Vertex, usize),
-        (task, contact): Context,
+        context: Context,
         outcome: &mut Outcome,
     ) {
-        let limits = Limits { faces, partners: task.plan.partners as usize };
+        let limits = Limits { faces, partners: context.task.plan.partners as usize };
         let regions = self.clusters.around(&self.mesh, seed, limits);
         if let Some(largest) = regions.last() {
             outcome.scope.extend(largest.faces.iter().chain(&largest.interior));
         }
         for region in regions {
-            if let Some(best) = self.best_filling(seed, &region, (task, contact), outcome) {
+            if let Some(best) = self.best_filling(seed, &region, context, outcome) {
                 outcome.proposal = Some(best);
                 return;
             }
@@ -208,66 +296,77 @@ impl Worker {
         &mut self,
         seed: Vertex,
         region: &Region,
-        (task, contact): Context,
+        context: Context,
         outcome: &mut Outcome,
     ) -> Option<Proposal> {
+        let task = context.task;
         let sweeps = task.gate.options.refill_sweeps + (region.faces.len() as f64).sqrt() as u32;
         let mut best: Option<Proposal> = None;
-        for filling in fillings(region.rim.len(), &region.corners, task.plan.fillings as usize) {
+        let all = fillings(region.rim.len(), &region.corners, task.plan.fillings as usize);
+        for (number, filling) in all.into_iter().enumerate() {
+            let key = (region.key(), number);
             let after = region.rim_irregularity_after + filling.irregularity();
             let growth = (filling.face_count() as f64 / region.faces.len() as f64).ln().abs();
-            if after >= region.irregularity || growth > task.gate.options.area {
+            let known =
+                context.hopeless.get(&key).is_some_and(|&needs| needs > FORGIVING * task.lambda);
+            if after >= region.irregularity || growth > task.gate.options.area || known {
                 continue;
             }
             let gain = region.irregularity - after;
             let edit = Edit::Refill(Refill::new(&self.mesh, region, filling));
-            let found = self.attempt(seed, (gain, 0.0, edit), sweeps, (task, contact), outcome);
-            let better =
-                |p: &Proposal| best.as_ref().is_none_or(|b| p.angle_growth < b.angle_growth);
-            best = found.filter(better).or(best.take());
+            let found = self.attempt(seed, (gain, 0.0, edit), sweeps, context, outcome);
+            match found {
+                Ok(p) if best.as_ref().is_none_or(|b| p.angle_growth < b.angle_growth) => {
+                    best = Some(p)
+                }
+                Ok(_) => (),
+                Err(needs) => outcome.hopeless.push((key, needs)),
+            }
         }
         best
     }
 
-    /// Makes an edit, has it judged, and undoes it.
+    /// Makes an edit, has it judged, and undoes it; or the exchange rate that it would have needed.
     fn attempt(
         &mut self,
         seed: Vertex,
         (gain, cost, edit): Candidate,
         sweeps: u32,
-        (task, contact): Context,
+        context: Context,
         outcome: &mut Outcome,
-    ) -> Option<Proposal> {
+    ) -> Result<Proposal, f64> {
+        let task = context.task;
         let mark = self.mesh.mark();
         let (quads, planned) = (self.mesh.quads_alive(), self.mesh.quad_ids());
-        edit.run(&mut self.mesh, planned).ok()?;
+        edit.run(&mut self.mesh, planned).map_err(|_| f64::INFINITY)?;
         let touched = self.mesh.touched_since(mark);
         let core = self.with_neighbours(&touched);
         let quads_added = self.mesh.quads_alive() - quads;
         let judged = self.gate.judge(
             &mut self.mesh,
             mark,
-            (&task.gate, contact),
-            (sweeps, gain, task.lambda),
+            (&task.gate, context.contact),
+            (sweeps, gain.max(1), task.lambda),
         );
         let in_size = task.size.allows(&self.mesh, quads_added);
-        match judged.and_then(|passed| in_size.then_some(passed).ok_or(Failure::Size)) {
-            Ok(Passed { angle_growth, distance_growth, moved }) => Some(Proposal {
+        match judged.and_then(|passed| in_size.then_some(passed).ok_or(Failure::Size.into())) {
+            Ok(Passed { angle_growth, shape, distance_growth, moved }) => Ok(Proposal {
                 edit,
                 seed,
                 gain,
                 cost,
                 angle_growth,
+                shape,
                 distance_growth,
                 quads_added,
                 touched,
                 core,
                 moved,
             }),
-            Err(failure) => {
-                outcome.failures.push(failure);
+            Err(rejected) => {
+                outcome.failures.push(rejected.failure);
                 outcome.scope.extend(touched.iter().filter(|&&v| v < self.mesh.vertex_ids()));
-                None
+                Err(rejected.needs)
             }
         }
     }

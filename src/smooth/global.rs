@@ -130,7 +130,8 @@ impl<'a> Work<'a> {
         budget: Option<Budget>,
     ) -> Self {
         let side = orientation(mesh, reference);
-        let relax = RelaxOptions { stress: options.stress, ..relax.clone() };
+        let (stress, project_every) = (options.stress, options.project_every);
+        let relax = RelaxOptions { stress, project_every, ..relax.clone() };
         let samples = mesh.vertex_count().clamp(20_000, 200_000);
         let places = watched(reference, samples);
         let guard = Guard { reference, places, samples, sign: side.sign() };

@@ -50,6 +50,8 @@ knobs! {
         iterations: u32 = 200, in 0.0..=5000.0, "count";
         /// How much more a face weighs the worse its shape is.
         stress: f64 = 2.0, in 0.0..=100.0, "factor";
+        /// Vertices are projected to the reference in every so many iterations.
+        project_every: u32 = 4, in 1.0..=100.0, "iterations";
         /// Stop when vertices move less than this, in the root mean square.
         still_edges: f64 = 2e-4, in 0.0..=0.1, "edges";
         /// Places the mesh has left are looked for in every so many iterations; 0 is never.
