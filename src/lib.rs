@@ -20,3 +20,8 @@ pub mod smooth;
 pub mod sqrtcc;
 pub mod surface;
 pub mod watch;
+
+// The example of the README must compile and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,44 +1,11 @@
 //! The √CC domain: exact round trips, and every invariant after long random edit sequences.
 
-use fixedbitset::FixedBitSet;
+mod common;
+
+use common::lifted::{fingerprint, frozen_edges, held_points, no_features, operation, samples};
 use proptest::prelude::*;
-use quadmend::mesh::{PolyMesh, Topology, shapes};
-use quadmend::ops::{Collapse, Flip, Op, Split, Turn};
-use quadmend::sqrtcc::{QuadMesh, lift, lower};
-
-fn no_features(mesh: &PolyMesh) -> FixedBitSet {
-    FixedBitSet::with_capacity(mesh.corner_count())
-}
-
-/// The edges of the cube [−1, 1]³.
-fn cube_edges(mesh: &PolyMesh) -> FixedBitSet {
-    let topology = Topology::new(mesh);
-    let mut features = no_features(mesh);
-    for h in 0..mesh.corner_count() {
-        let ends =
-            [h, topology.next[h] as usize].map(|c| mesh.points()[mesh.corners()[c] as usize]);
-        let sides = (0..3)
-            .filter(|&k| ends.iter().all(|p| (p[k] - ends[0][k].signum()).abs() < 1e-9))
-            .count();
-        features.set(h, sides == 2);
-    }
-    features
-}
-
-fn samples() -> Vec<(&'static str, PolyMesh, FixedBitSet)> {
-    let plain = |name, mesh: PolyMesh| {
-        let features = no_features(&mesh);
-        (name, mesh, features)
-    };
-    let cube = shapes::cube(8);
-    let edges = cube_edges(&cube);
-    vec![
-        plain("sphere", shapes::sphere(8)),
-        plain("disk", shapes::grid(16, 12)),
-        plain("torus", shapes::torus(24, 12)),
-        ("cube with features", cube, edges),
-    ]
-}
+use quadmend::mesh::PolyMesh;
+use quadmend::sqrtcc::{lift, lower};
 
 /// The faces with each cycle turned so that its smallest vertex comes first.
 fn normalised(mesh: &PolyMesh) -> Vec<Vec<u32>> {
@@ -80,42 +47,6 @@ fn regular_shapes_have_only_the_irregular_elements_they_need() {
     for ((name, mesh, features), (_, count)) in samples().into_iter().zip(expected) {
         assert_eq!(lift(&mesh, &features).expect(name).total_irregularity(), count, "{name}");
     }
-}
-
-/// A random operation at a random place; most are refused.
-fn operation(q: &QuadMesh, kind: u8, place: u32, turns: u32) -> Op {
-    let edge = place % (4 * q.quad_ids());
-    match kind % 4 {
-        0 => Op::Flip(Flip { edge, turn: Turn::Ccw }),
-        1 => Op::Flip(Flip { edge, turn: Turn::Cw }),
-        2 => Op::Collapse(Collapse { edge }),
-        _ => {
-            let mut last = edge;
-            if q.is_quad_alive(edge / 4) {
-                for _ in 0..2 + turns % 3 {
-                    last = q.ccw(last);
-                }
-            }
-            Op::Split(Split { first: edge, last })
-        }
-    }
-}
-
-/// Everything that tells two states of Q apart.
-fn fingerprint(q: &QuadMesh) -> String {
-    let mut fresh = q.clone();
-    fresh.commit();
-    format!("{fresh:?}")
-}
-
-fn held_points(q: &QuadMesh) -> Vec<[u64; 3]> {
-    let held = q.vertices().filter(|&v| q.is_held(v));
-    held.map(|v| q.position(v).coords.map(f64::to_bits).into()).collect()
-}
-
-fn frozen_edges(q: &QuadMesh) -> Vec<[u32; 2]> {
-    let frozen = q.quads().filter(|&e| q.is_frozen(e));
-    frozen.map(|e| [q.origin(4 * e), q.origin(4 * e + 2)]).collect()
 }
 
 proptest! {

@@ -55,6 +55,8 @@ pub enum Stop {
     NotADisk,
     /// It is empty.
     Empty,
+    /// A vertex inside is held.
+    Held,
 }
 
 impl Grower {
@@ -231,6 +233,9 @@ impl Grower {
             region.rim_irregularity_after += (inside - at.wanted).unsigned_abs();
         }
         region.interior = self.interior(mesh, &rim);
+        if region.interior.iter().any(|&v| mesh.is_held(v)) {
+            return Err(Stop::Held);
+        }
         region.irregularity += region.interior.iter().map(|&v| mesh.irregularity(v)).sum::<u32>();
         let corners: usize = self.faces.iter().map(|&f| mesh.valence(f) as usize).sum();
         let edges = corners.midpoint(rim.len());

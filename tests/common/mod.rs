@@ -3,6 +3,8 @@
 // Each test file compiles this module for itself and uses a part of it.
 #![allow(dead_code, reason = "every test uses some of it")]
 
+pub(crate) mod lifted;
+
 use std::path::{Path, PathBuf};
 
 use quadmend::mesh::{DisjointSets, NONE, PolyMesh, Topology};
@@ -102,4 +104,25 @@ pub(crate) struct Component {
 /// The Euler characteristics and boundary loops alone, which no mend of a manifold changes.
 pub(crate) fn shape(mesh: &PolyMesh) -> Vec<(i64, usize)> {
     census(mesh).iter().map(|c| (c.chi, c.loops)).collect()
+}
+
+/// The two ends of an edge, as the bits of their coordinates, the smaller first.
+pub(crate) type Segment = [[u64; 3]; 2];
+
+/// The ends of edges, bit for bit, sorted; as often as they occur.
+pub(crate) fn segments(
+    mesh: &PolyMesh,
+    topology: &Topology,
+    edges: impl IntoIterator<Item = u32>,
+) -> Vec<Segment> {
+    let bits = |v: u32| mesh.points()[v as usize].coords.map(f64::to_bits).into();
+    let ends = |h: u32| {
+        let next = topology.next[h as usize];
+        let mut ends: Segment = [h, next].map(|c| bits(mesh.corners()[c as usize]));
+        ends.sort_unstable();
+        ends
+    };
+    let mut all: Vec<Segment> = edges.into_iter().map(ends).collect();
+    all.sort_unstable();
+    all
 }
