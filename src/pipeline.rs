@@ -6,6 +6,7 @@ use crate::mesh::{
 };
 use crate::metrics::{Metrics, MetricsError, Target, measure};
 use crate::planner::automation::Automation;
+use crate::planner::gate::GateOptions;
 use crate::planner::schedule::{EditRecord, RoundRecord, Schedule};
 use crate::smooth;
 use crate::sqrtcc::{LiftError, QuadMesh, lift, lower};
@@ -19,6 +20,9 @@ use thiserror::Error;
 /// A mesh farther than this from its reference in the mean, relative to the diagonal of the
 /// reference, was not made from it.
 const ELSEWHERE_REL: f64 = 0.05;
+
+/// A mesh this near to its reference is its own.
+const SAME_REL: f64 = 1e-9;
 
 /// Samples each way for the distance that cleaning must keep.
 const BUDGET_SAMPLES: usize = 50_000;
@@ -133,8 +137,8 @@ fn edit(
 ) -> Result<(QuadMesh, usize, Schedule), CleanError> {
     watch.progress(Phase::Reference, 0, 1, None);
     let reference = Reference::new(surface)?;
-    let budget = distance(mesh, &reference)?;
     let topology = Topology::new(mesh);
+    let budget = budget(mesh, &reference, (&config.gate, mean_edge(mesh, &topology)))?;
     let features = mesh_features(mesh, &topology, &reference, &config.features);
     let automation = Automation {
         reference: &reference,
@@ -155,12 +159,20 @@ fn edit(
     Ok((q, features.count_ones(..) / 2, schedule))
 }
 
-/// The distance to the reference that cleaning must keep.
-fn distance(mesh: &PolyMesh, reference: &Reference) -> Result<Deviation, CleanError> {
+/// The distance to the reference that cleaning must keep: that of the mesh as it is, or, where
+/// that is none because the mesh is its own reference, a part of its mean edge.
+fn budget(
+    mesh: &PolyMesh,
+    reference: &Reference,
+    (gate, edge): (&GateOptions, f64),
+) -> Result<Deviation, CleanError> {
     let distance = surface::deviation(&Reference::new(mesh)?, reference, BUDGET_SAMPLES);
     let rms_rel = distance.rms / reference.diagonal();
     if rms_rel > ELSEWHERE_REL {
         return Err(CleanError::Elsewhere { rms_rel });
     }
-    Ok(distance)
+    if rms_rel > SAME_REL {
+        return Ok(distance);
+    }
+    Ok(Deviation { hausdorff: gate.own_hausdorff_edges * edge, rms: gate.own_rms_edges * edge })
 }

@@ -51,7 +51,8 @@ impl Automation<'_> {
         let mut contact = Contact::new(self.reference, faces);
         let size = Size { start: mesh.quads_alive(), drift: self.plan.size_drift };
         contact.attach(mesh, self.reference)?;
-        let allowed = self.gate.rms.powi(2) * contact.squared_distances();
+        let floor = contact.probe_count() as f64 * self.budget.rms.powi(2);
+        let allowed = self.gate.rms.powi(2) * contact.squared_distances().max(floor);
         self.smooth(mesh, self.plan.smooth_between, watch)?;
         for i in 0..self.plan.stages {
             contact.attach(mesh, self.reference)?;

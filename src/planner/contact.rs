@@ -66,6 +66,12 @@ impl Contact {
         }
     }
 
+    /// Number of probes.
+    #[must_use]
+    pub fn probe_count(&self) -> usize {
+        self.points.len()
+    }
+
     /// Σ squared distance of the probes to the mesh, in squared units of the file. O(probes).
     #[must_use]
     pub fn squared_distances(&self) -> f64 {

@@ -31,7 +31,11 @@ knobs! {
         cover_edges: f64 = 1.0, in 0.0..=10.0, "mean edges";
         /// Root mean square distance of the reference to the mesh that all edits together may
         /// cause, as a multiple of the input's.
-        rms: f64 = 1.08, in 0.0..=100.0, "input RMS distances";
+        rms: f64 = 1.06, in 0.0..=100.0, "input RMS distances";
+        /// Hausdorff distance allowed where the mesh is its own reference, and so at none from it.
+        own_hausdorff_edges: f64 = 0.2, in 0.0..=10.0, "mean edges";
+        /// Root mean square distance allowed where the mesh is its own reference.
+        own_rms_edges: f64 = 0.03, in 0.0..=10.0, "mean edges";
         /// Largest |ln| of the number of faces after over before a refill.
         area: f64 = 0.3, in 0.0..=3.0, "ln";
     }
@@ -393,7 +397,7 @@ impl Shape {
     pub fn is_about_as_good_as(&self, other: &Self) -> bool {
         self.inverted <= other.inverted
             && self.deficit <= other.deficit + 0.02
-            && self.jacobian >= 0.6 * other.jacobian.max(0.0).min(POOR)
+            && self.jacobian >= 0.6 * other.jacobian.clamp(0.0, POOR)
     }
 
     /// Adds a face; `up` decides which way round a quad is meant to be.

@@ -333,7 +333,7 @@ impl Worker {
             let found = self.attempt(seed, (gain, 0.0, edit), sweeps, context, outcome);
             match found {
                 Ok(p) if best.as_ref().is_none_or(|b| p.angle_growth < b.angle_growth) => {
-                    best = Some(p)
+                    best = Some(p);
                 }
                 Ok(_) => (),
                 Err(needs) => outcome.hopeless.push((key, needs)),
