@@ -40,7 +40,7 @@ const SAMPLES: usize = 20_000;
 /// Room for a budget that is met exactly: none at all and smoothing could only stand still.
 const HARDLY_MORE: f64 = 1.002;
 /// How many times its even share of the slack in distance an element may use up.
-const GREED: f64 = 4.0;
+const GREED: f64 = 16.0;
 
 impl Automation<'_> {
     /// Edits and smooths `mesh`; what was done. If cancelled, the mesh is valid and smoothed as

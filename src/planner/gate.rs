@@ -31,7 +31,7 @@ knobs! {
         cover_edges: f64 = 1.0, in 0.0..=10.0, "mean edges";
         /// Root mean square distance of the reference to the mesh that all edits together may
         /// cause, as a multiple of the input's.
-        rms: f64 = 1.06, in 0.0..=100.0, "input RMS distances";
+        rms: f64 = 1.1, in 0.0..=100.0, "input RMS distances";
         /// Hausdorff distance allowed where the mesh is its own reference, and so at none from it.
         own_hausdorff_edges: f64 = 0.2, in 0.0..=10.0, "mean edges";
         /// Root mean square distance allowed where the mesh is its own reference.
