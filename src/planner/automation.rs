@@ -87,9 +87,9 @@ impl Automation<'_> {
             orientation: self.orientation,
             relax: self.relax,
             options: self.gate,
-            distance: self.gate.distance * self.budget.hausdorff,
+            distance: self.gate.distance * self.hausdorff(),
             growth: GREED * schedule.slack().max(0.0) / mesh.total_irregularity().max(1) as f64,
-            cover: (self.gate.cover_edges * self.mean_edge).min(self.budget.hausdorff),
+            cover: (self.gate.cover_edges * self.mean_edge).min(self.hausdorff()),
         };
         let task = Task { stage, lambda, plan: self.plan, costs: self.costs, size, gate };
         for _ in 0..self.plan.rounds {
@@ -97,6 +97,11 @@ impl Automation<'_> {
                 return;
             }
         }
+    }
+
+    /// The Hausdorff distance to keep, in units of the file.
+    fn hausdorff(&self) -> f64 {
+        self.gate.hausdorff * self.budget.hausdorff
     }
 
     fn smooth(
@@ -110,12 +115,11 @@ impl Automation<'_> {
         let start =
             Reference::plain(&polygons.mesh).map(|m| deviation(&m, self.reference, SAMPLES));
         let start = start.unwrap_or_default();
-        let share = self.smooth.budget;
         // Where edits have used up the budget, smoothing must not make it worse.
-        let limit = |budget: f64, start: f64| (share * budget).max(HARDLY_MORE * start);
+        let limit = |budget: f64, start: f64| budget.max(HARDLY_MORE * start);
         let budget = Budget {
-            hausdorff: limit(self.budget.hausdorff, start.hausdorff),
-            rms: limit(self.budget.rms, start.rms),
+            hausdorff: limit(self.hausdorff(), start.hausdorff),
+            rms: limit(self.smooth.budget * self.budget.rms, start.rms),
         };
         let (points, _) = smooth::smooth(
             &polygons.mesh,
