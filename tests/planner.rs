@@ -283,7 +283,6 @@ fn a_messed_up_shape_becomes_clean() {
 
 /// Without a reference the input is the surface to stay on.
 #[test]
-#[ignore = "not yet: the distance that is allowed is that of the input, which is zero here"]
 fn a_mesh_is_cleaned_without_a_reference() {
     let mut config = Config::default();
     config.measure.samples = 20_000;

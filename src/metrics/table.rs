@@ -94,7 +94,8 @@ fn change(metric: &Metric, before: f64, after: f64) -> String {
 
 /// Relative where there is something to relate to, else the difference.
 fn extent(kind: Kind, before: f64, after: f64) -> String {
-    if before > 0.0 && after >= 0.0 {
+    // Rounding noise is nothing to relate to either.
+    if before > 1e-6 * after && after >= 0.0 {
         return format!("{:.1} %", 100.0 * (after - before).abs() / before);
     }
     show(kind, (after - before).abs())
@@ -139,6 +140,7 @@ mod tests {
         assert_eq!(changed("manifold", 0.0, 1.0), "better");
         assert_eq!(changed("V", 10.0, 12.0), "↑ 20.0 %");
         assert_eq!(changed("flipped_faces", 0.0, 3.0), "↑ 3  worse");
+        assert_eq!(changed("rms", 1e-17, 0.000_3), "↑ 0.03000 %  worse");
         assert_eq!(changed("fig10_mean", 2.0, 2.000_000_1), "=");
     }
 
