@@ -5,6 +5,7 @@ mod common;
 use common::{MESHES, data_folder, say, shape};
 use quadmend::io;
 use quadmend::mesh::{MendKind, MendPolicy, PolyMesh, check, mend};
+use quadmend::sqrtcc::{lift, lower};
 
 /// Euler characteristic of the cut mesh, boundary loops and doublets, counted by another program;
 /// every mesh is one component.
@@ -63,5 +64,32 @@ fn counts_are_those_of_another_program() {
         let (output, report) = mend(input, MendPolicy::Mend).unwrap();
         assert_eq!(shape(&output), [(chi, loops)], "{name}");
         assert_eq!(report.count(MendKind::DoubletMerged), doublets, "{name}");
+    }
+}
+
+/// The faces with each cycle turned so that its smallest vertex comes first.
+fn cycles(mesh: &PolyMesh) -> Vec<Vec<u32>> {
+    let turned = mesh.faces().map(|face| {
+        let start = (0..face.len()).min_by_key(|&i| face[i]).unwrap_or(0);
+        (0..face.len()).map(|i| face[(start + i) % face.len()]).collect()
+    });
+    turned.collect()
+}
+
+#[test]
+fn lifting_and_lowering_returns_every_polygon() {
+    let Some(folder) = data_folder("lifting_and_lowering_returns_every_polygon") else {
+        return;
+    };
+    for name in MESHES {
+        let loaded = io::read(&folder.join(format!("{name}.obj"))).unwrap();
+        let (mesh, _) = mend(loaded.mesh, MendPolicy::Mend).unwrap();
+        let none = fixedbitset::FixedBitSet::with_capacity(mesh.corner_count());
+        let q = lift(&mesh, &none).unwrap();
+        assert_eq!(q.check(), Ok(()), "{name}");
+        assert_eq!(q.index_sum(), 4 * q.euler_characteristic(), "{name}: equation 1");
+        let back = lower(&q, mesh.group_names()).unwrap().mesh;
+        assert!(cycles(&back) == cycles(&mesh), "{name}: other polygons");
+        assert!(back.points() == mesh.points(), "{name}: other points");
     }
 }
