@@ -61,6 +61,8 @@ const INVERTED: &str = "inverted quads";
 const MOST_T_JUNCTIONS: f64 = 0.04;
 /// How much larger mean angle deviation and distances to the reference may get.
 const GROWTH: f64 = 1.1;
+/// Distances are sampled; on a flat plate all there is to see is slivers at its round holes.
+const NOISE_REL: f64 = 1e-6;
 
 /// A mesh of the data folder and its reference surface.
 struct Input {
@@ -125,7 +127,7 @@ fn judge_numbers(before: &Summary, after: &Summary, faults: &mut Faults) {
         let (Some(before), Some(after)) = (of(before), of(after)) else {
             panic!("{what} is measured");
         };
-        faults.at_most(what, after, GROWTH * before);
+        faults.at_most(what, after, GROWTH * before + NOISE_REL);
     }
 }
 

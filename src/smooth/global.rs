@@ -210,7 +210,7 @@ impl<'a> Work<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::{FeatureOptions, mesh_features, trial};
+    use crate::surface::trial;
     use crate::watch::Silent;
 
     /// A ball as a cube of quads, drawn out along x to a spindle with thin horns.
@@ -277,45 +277,5 @@ mod tests {
         let none = Budget { hausdorff: 0.0, rms: 0.0 };
         let (points, _) = smooth(&mesh, &held, &surface, options, Some(none), &Silent);
         assert_eq!(points, mesh.points());
-    }
-
-    #[test]
-    #[ignore = "needs data"]
-    #[allow(clippy::print_stderr)]
-    fn smooth_data() {
-        let only = std::env::var("ONLY").unwrap_or_default();
-        let out = std::env::var_os("OUT").map(std::path::PathBuf::from);
-        for name in trial::names().iter().filter(|n| n.contains(&only)) {
-            let Some((mesh, reference)) = trial::pair(name) else { continue };
-            let surface = Reference::new(&reference).unwrap();
-            let topology = Topology::new(&mesh);
-            let features = mesh_features(&mesh, &topology, &surface, &FeatureOptions::default());
-            let held = held_vertices(&mesh, &topology, &features);
-            let set = |key: &str| std::env::var(key).unwrap_or_else(|_| "{}".into());
-            let smoothing: SmoothOptions = serde_json::from_str(&set("SMOOTH")).unwrap();
-            let relaxing: RelaxOptions = serde_json::from_str(&set("RELAX")).unwrap();
-            let options = (&smoothing, &relaxing);
-            let start = std::time::Instant::now();
-            let (points, report) = smooth(&mesh, &held, &surface, options, None, &Silent);
-            let seconds = start.elapsed().as_secs_f64();
-            let d = 100.0 / surface.diagonal();
-            eprintln!(
-                "{name:18} {seconds:6.2}s it {:3} mot {:.1e} H {:.4}->{:.4} R {:.5}->{:.5} SJ {:.3}->{:.3} mended {}",
-                report.iterations,
-                report.motion,
-                report.before.hausdorff * d,
-                report.after.hausdorff * d,
-                report.before.rms * d,
-                report.after.rms * d,
-                report.least_jacobian_before,
-                report.least_jacobian_after,
-                report.mended,
-            );
-            let mut mesh = mesh.clone();
-            mesh.set_points(points);
-            if let Some(out) = &out {
-                trial::write(&mesh, &out.join(format!("{name}.obj")));
-            }
-        }
     }
 }

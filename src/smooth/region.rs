@@ -267,28 +267,4 @@ mod tests {
         let bend = (h - a).angle(&(b - h)).to_degrees();
         assert!(bend < 8.0, "the side of the T-junction bends by {bend} degrees");
     }
-
-    /// Time for each vertex and iteration, of a region of 441 vertices relaxed again and again.
-    #[test]
-    #[ignore = "measures time"]
-    #[allow(clippy::print_stderr)]
-    fn time_of_a_region() {
-        let mesh = grid(20);
-        let plane = Reference::new(&grid(200)).unwrap();
-        let (mut region, options) = (Region::new(), RelaxOptions::default());
-        let (rounds, iterations) = (200, 40);
-        let start = std::time::Instant::now();
-        for _ in 0..rounds {
-            region.begin(Orientation::Along);
-            for (&p, v) in mesh.points().iter().zip(0..) {
-                let rim = v / 21 % 20 == 0 || v % 21 % 20 == 0;
-                let p = if rim { p } else { p + jitter(v) * 0.5 };
-                region.add_vertex(p, rim, None);
-            }
-            mesh.faces().for_each(|f| region.add_face(f));
-            relax_local(&mut region, &plane, &options, iterations);
-        }
-        let each = f64::from(rounds * iterations * 441);
-        eprintln!("{:.3} us a vertex and iteration", start.elapsed().as_secs_f64() * 1e6 / each);
-    }
 }

@@ -347,33 +347,4 @@ mod tests {
         let (marked, lines) = feature_edges(&cube(10, 1.0, 0.0), &noisy);
         assert_eq!((marked, lines.lengths().len()), (0, 0));
     }
-
-    #[test]
-    #[ignore = "needs data"]
-    #[allow(clippy::print_stderr)]
-    fn count_on_data() {
-        for name in crate::surface::trial::names() {
-            let Some((mesh, reference)) = crate::surface::trial::pair(&name) else { continue };
-            let start = std::time::Instant::now();
-            let surface = Reference::new(&reference).unwrap();
-            let built = start.elapsed().as_secs_f64();
-            let edge = mean_edge(&mesh, &Topology::new(&mesh));
-            let lines = SharpLines::new(&surface, &FeatureOptions::default(), edge);
-            let (marked, _) = feature_edges(&mesh, &reference);
-            let raw = surface.creases().iter().filter(|c| c.angle_deg > 40.0).count();
-            let total: f64 = lines.lengths().iter().sum();
-            let query = std::time::Instant::now();
-            let hits = surface.closest_many(mesh.points());
-            let far = hits.iter().map(|h| h.distance).fold(0.0, f64::max) / surface.diagonal();
-            eprintln!(
-                "{name:18} {:6} tris built {built:.3}s, {:.2} us/query, far {far:.5}; raw {raw:5} kept {:5} segments in {:4} lines, {:7.1} edges long; mesh edges {marked} = {:.1} long",
-                surface.triangles().len(),
-                query.elapsed().as_secs_f64() * 1e6 / hits.len() as f64,
-                lines.segments().len(),
-                lines.lengths().len(),
-                total / edge,
-                marked as f64,
-            );
-        }
-    }
 }
