@@ -8,7 +8,9 @@
 use super::contact::Contact;
 use super::edit::Edit;
 use super::gate::{Failure, shape_of};
-use super::worker::{Context, FORGIVING, Outcome, Proposal, RefillKey, Stage, Task, Worker};
+use super::worker::{
+    Context, FORGIVING, MOST_LOSS, Outcome, Proposal, RefillKey, Stage, Task, Worker,
+};
 use crate::mesh::Point;
 use crate::sqrtcc::{QuadMesh, Vertex};
 use crate::watch::{Phase, Watch};
@@ -23,8 +25,8 @@ use std::sync::Mutex;
 pub struct EditRecord {
     /// The round in which it was made, from 1.
     pub round: u32,
-    /// Irregular elements fewer.
-    pub gain: u32,
+    /// Irregular elements fewer; negative where a T-junction was worth more.
+    pub gain: i32,
     /// Cost of the path, 0 for refills.
     pub cost: f64,
     /// Growth of Σ |angle − ideal| around it, degrees.
@@ -235,9 +237,7 @@ impl Schedule {
                 continue;
             }
             let (first_new, mark) = (mesh.vertex_ids(), mesh.mark());
-            if !makes(mesh, &proposal, planned.1) {
-                continue;
-            }
+            let Some(gain) = makes(mesh, &proposal, planned.1) else { continue };
             let moved = proposal.moved_to(planned.0, first_new);
             let moved: Vec<_> = moved
                 .filter(|m| !(taken.contains(&m.0) && proposal.core.binary_search(&m.0).is_err()))
@@ -252,7 +252,7 @@ impl Schedule {
                 taken.insert(v);
             }
             contact.reassign(mesh, &mesh.touched_since(mark), &proposal.core);
-            self.record(proposal, planned.0);
+            self.record(proposal, gain, planned.0);
             made += 1;
         }
         mesh.commit();
@@ -265,7 +265,7 @@ impl Schedule {
         near && task.size.allows(mesh, proposal.quads_added)
     }
 
-    fn record(&mut self, proposal: Proposal, planned: u32) {
+    fn record(&mut self, proposal: Proposal, gain: i32, planned: u32) {
         self.slack -= proposal.distance_growth;
         for &v in proposal.core.iter().filter(|&&v| v < planned) {
             self.changed[v as usize] = self.round;
@@ -273,7 +273,7 @@ impl Schedule {
         let place = proposal.moved.first().map_or_else(Point::origin, |m| m.1);
         self.edits.push(EditRecord {
             round: self.round,
-            gain: proposal.gain,
+            gain,
             cost: proposal.cost,
             angle_growth_deg: proposal.angle_growth,
             place: place.coords.into(),
@@ -282,26 +282,26 @@ impl Schedule {
     }
 }
 
-/// Makes the edit if it still does what was planned.
-fn makes(mesh: &mut QuadMesh, proposal: &Proposal, planned: u32) -> bool {
+/// Makes the edit if it still does what was planned; how many irregular elements fewer there are.
+fn makes(mesh: &mut QuadMesh, proposal: &Proposal, planned: u32) -> Option<i32> {
     let (mark, around) = (mesh.mark(), &proposal.core);
     let irregularity = |mesh: &QuadMesh, vertices: &[Vertex]| -> u32 {
         let alive = vertices.iter().filter(|&&v| v < mesh.vertex_ids() && mesh.is_alive(v));
         alive.map(|&v| mesh.irregularity(v)).sum()
     };
     let before = irregularity(mesh, around);
-    if proposal.edit.run(mesh, planned).is_err() {
-        return false;
-    }
+    proposal.edit.run(mesh, planned).ok()?;
     let mut now = mesh.touched_since(mark);
     now.extend(around);
     now.sort_unstable();
     now.dedup();
-    let as_planned = irregularity(mesh, &now) + proposal.gain <= before;
-    if !as_planned {
+    let loss = if matches!(proposal.edit, Edit::TypeChange { .. }) { MOST_LOSS } else { 0 };
+    let gain = before as i32 - irregularity(mesh, &now) as i32;
+    if gain + (loss as i32) < proposal.gain as i32 {
         mesh.undo_to(mark);
+        return None;
     }
-    as_planned
+    Some(gain)
 }
 
 /// Moves vertices to where they relaxed; whether the quads there are then about as good as when

@@ -159,6 +159,8 @@ pub struct Worker {
 /// What failed is tried again once the exchange rate comes this near to what it needed: the mesh
 /// has been smoothed since.
 pub(super) const FORGIVING: f64 = 1.25;
+/// Irregularity that the end of a T-junction may cost where there is no other way.
+pub(super) const MOST_LOSS: u32 = 2;
 /// Ways to resolve a T-junction that are judged.
 const MOST_TYPE_CHANGES: usize = 24;
 
@@ -220,17 +222,20 @@ impl Worker {
     }
 
     /// The one or two operations at a face with a T-junction after which there are fewer, at the
-    /// same E, that cost the least.
+    /// same E or else a little more, that cost the least.
     fn propose_type_change(&mut self, seed: Vertex, context: Context, outcome: &mut Outcome) {
         if !self.mesh.is_face(seed) || t_junctions(&self.mesh, &[seed]) == 0 {
             return;
         }
         let mut near = vec![seed];
         near.extend(self.mesh.neighbours(seed).filter(|&v| self.mesh.valence(v) == 3));
-        for depth in 1..=context.task.plan.depth {
+        let depths = 1..=context.task.plan.depth;
+        for (most, depth) in
+            [0, MOST_LOSS].into_iter().flat_map(|most| depths.clone().map(move |d| (most, d)))
+        {
             let mut ways = Vec::new();
             for &v in &near {
-                ways.extend(local::sequences(&mut self.mesh, v, depth, 0));
+                ways.extend(local::sequences(&mut self.mesh, v, depth, most as i32));
             }
             ways.retain(|(_, ops)| self.resolves_t_junction(ops));
             for (_, ops) in ways.into_iter().take(MOST_TYPE_CHANGES) {
