@@ -42,7 +42,7 @@ const MOST_E: [(&str, f64); 17] = [
     ("koala_im50k", 0.11),
     ("lilium_gmsh", 0.06),
     ("mountain_im15k", 0.1),
-    ("penguin_mlpair", 0.11),
+    ("penguin_mlpair", 0.16),
     ("planeholes_im16k", 0.19),
     ("plate_gmsh", 0.055),
     ("rockerarm_im20k", 0.12),
