@@ -166,7 +166,7 @@ fn budget(
     reference: &Reference,
     (gate, edge): (&GateOptions, f64),
 ) -> Result<Deviation, CleanError> {
-    let distance = surface::deviation(&Reference::new(mesh)?, reference, BUDGET_SAMPLES);
+    let distance = surface::deviation(&Reference::plain(mesh)?, reference, BUDGET_SAMPLES);
     let rms_rel = distance.rms / reference.diagonal();
     if rms_rel > ELSEWHERE_REL {
         return Err(CleanError::Elsewhere { rms_rel });

@@ -3,7 +3,7 @@
 //! A dislocation (an adjacent v3–v5 pair of Q) carries a conserved vector; in a regular region it
 //! can be anywhere, and where it is relative to where it began is a [`Displacement`].
 
-use std::ops::{Add, Neg};
+use std::ops::Add;
 
 /// A displacement of a dislocation in half-units: `climb` along u (v5 → v3 is the way a T-junction
 /// eats its stem), `glide` along g, each half a primal edge. Steps change both by ±1 or glide by
@@ -35,13 +35,5 @@ impl Add for Displacement {
 
     fn add(self, other: Self) -> Self {
         Self::new(self.climb + other.climb, self.glide + other.glide)
-    }
-}
-
-impl Neg for Displacement {
-    type Output = Self;
-
-    fn neg(self) -> Self {
-        Self::new(-self.climb, -self.glide)
     }
 }

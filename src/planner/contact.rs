@@ -145,7 +145,14 @@ fn distance_to_face(mesh: &QuadMesh, f: Vertex, at: &Point) -> f64 {
 #[must_use]
 pub fn fan_distance(corners: &[Point], at: &Point) -> f64 {
     let n = corners.len();
-    let middle = Point::from(corners.iter().map(|p| p.coords).sum::<Vector>() / n.max(1) as f64);
+    let middle = middle_of(corners);
     let triangles = (0..n).map(|i| [middle, corners[i], corners[(i + 1) % n]]);
     triangles.map(|t| squared_distance(at, &t)).fold(f64::INFINITY, f64::min)
+}
+
+/// The mean of the corners of a polygon.
+#[must_use]
+pub fn middle_of(corners: &[Point]) -> Point {
+    let sum: Vector = corners.iter().map(|p| p.coords).sum();
+    Point::from(sum / corners.len().max(1) as f64)
 }

@@ -4,7 +4,7 @@
 //! still good or as good as before, corner angles have not grown worse by more than the exchange
 //! rate λ per irregular element removed, and the surface is within the budget, both ways.
 
-use super::contact::{Contact, fan_distance};
+use super::contact::{Contact, fan_distance, middle_of};
 use crate::knobs::knobs;
 use crate::mesh::{Point, Vector};
 use crate::smooth::{Orientation, Region as Patch, RelaxOptions, relax_local};
@@ -300,8 +300,8 @@ impl Gate {
     ) -> Shape {
         let mut shape = Shape::default();
         let mut points: SmallVec<[Point; 8]> = SmallVec::new();
-        let in_region = |&&v: &&Vertex| self.stamp.get(v as usize) != Some(&self.epoch);
-        for &f in self.faces.iter().chain(touched.iter().filter(in_region)) {
+        let gone = |&&v: &&Vertex| self.stamp.get(v as usize) != Some(&self.epoch);
+        for &f in self.faces.iter().chain(touched.iter().filter(gone)) {
             if f >= mesh.vertex_ids() || !mesh.is_alive(f) || !mesh.is_face(f) || mesh.is_ghost(f) {
                 continue;
             }
@@ -320,14 +320,9 @@ impl Gate {
     fn leaves_surface(&self, setting: &Setting) -> bool {
         self.changed.iter().any(|&i| {
             let near = self.patch.triangle(self.patch.face(i as usize)[0]);
-            setting.reference.closest_near(&self.middle(i), near).distance > setting.distance
+            setting.reference.closest_near(&middle_of(&self.points_of(i)), near).distance
+                > setting.distance
         })
-    }
-
-    fn middle(&self, face: u32) -> Point {
-        let face = self.patch.face(face as usize);
-        let sum: Vector = face.iter().map(|&v| self.patch.point(v).coords).sum();
-        Point::from(sum / face.len() as f64)
     }
 
     /// How much Σ squared distance grows over the probes of the region; `None` if one of them is
@@ -372,8 +367,7 @@ struct Ball {
 
 impl Ball {
     fn new(corners: SmallVec<[Point; 8]>) -> Self {
-        let sum: Vector = corners.iter().map(|p| p.coords).sum();
-        let middle = Point::from(sum / corners.len().max(1) as f64);
+        let middle = middle_of(&corners);
         let radius = corners.iter().map(|p| (p - middle).norm()).fold(0.0, f64::max);
         Self { corners, middle, radius }
     }
