@@ -94,7 +94,7 @@ fn plan(c: &mut Criterion) {
                 for region in &regions {
                     for filling in fillings(region.rim.len(), &region.corners, 2) {
                         let mark = q.mark();
-                        let _ = Refill::new(&q, region, filling).run(&mut q);
+                        let _ = Refill::new(&q, region, filling).and_then(|r| r.run(&mut q));
                         q.undo_to(mark);
                     }
                 }

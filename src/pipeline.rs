@@ -153,7 +153,7 @@ fn edit(
     };
     let mut q = lift(mesh, &features)?;
     for v in vertices_on_lines(mesh, &topology, &reference, &config.features) {
-        q.hold(v);
+        q.pin(v);
     }
     let schedule = automation.run(&mut q, watch)?;
     Ok((q, features.count_ones(..) / 2, schedule))

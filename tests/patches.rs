@@ -97,7 +97,7 @@ fn refill(mesh: &mut QuadMesh, region: &Region, filling: Filling) -> Option<Refi
     let corners = region.corners.len();
     let before = mesh.total_irregularity();
     let after = region.rim_irregularity_after + filling.irregularity();
-    let refill = Refill::new(mesh, region, filling);
+    let refill = Refill::new(mesh, region, filling).unwrap();
     assert_eq!(refill.places.len(), refill.filling.interior as usize);
     assert!(refill.places.iter().all(|p| p.iter().all(|x| x.is_finite())), "places are finite");
     refill.run(mesh).ok()?;

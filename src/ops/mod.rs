@@ -47,8 +47,8 @@ pub enum Refusal {
     /// Two vertices would be joined twice, or a face would meet itself or another twice.
     #[error("two elements would meet along two different edges")]
     DoubleEdge,
-    /// Both vertices are held in place by a boundary or feature.
-    #[error("both vertices are held by boundaries or features")]
+    /// Both vertices are held in place, or a pin would have no place left.
+    #[error("what is held in place would have to move")]
     Held,
     /// Corners that must differ are the same.
     #[error("the neighbourhood is too small")]

@@ -24,20 +24,24 @@ pub struct Refill {
     /// Where its new vertices are.
     #[serde(skip)]
     pub places: Vec<Point>,
+    /// Which of its new vertices take the places of the pins inside.
+    pub pins: Vec<u32>,
 }
 
 impl Refill {
-    /// Puts `filling`, whose rim vertex 0 is the start of `region.rim[0]`, in place of `region`.
-    #[must_use]
-    pub fn new(mesh: &QuadMesh, region: &Region, filling: Filling) -> Self {
-        let places = super::embed::transport(mesh, region, &filling);
-        Self {
+    /// Puts `filling`, whose rim vertex 0 is the start of `region.rim[0]`, in place of `region`;
+    /// refused if it has fewer new vertices than there are pins inside.
+    pub fn new(mesh: &QuadMesh, region: &Region, filling: Filling) -> Result<Self, Refusal> {
+        let mut places = super::embed::transport(mesh, region, &filling);
+        let pins = pins(mesh, region, &mut places)?;
+        Ok(Self {
             faces: region.faces.clone(),
             interior: region.interior.clone(),
             rim: region.rim.clone(),
             filling,
             places,
-        }
+            pins,
+        })
     }
 
     /// Replaces the region, whole or not at all.
@@ -102,6 +106,7 @@ impl Refill {
     fn insert(&self, mesh: &mut QuadMesh, rim: &[Vertex], like: Vertex) {
         let mut ids = rim.to_vec();
         ids.extend(self.places.iter().map(|&p| mesh.add_vertex_like(rim[0], p)));
+        self.pins.iter().for_each(|&i| mesh.pin(ids[rim.len() + i as usize]));
         let slots = self.slots(mesh);
         let mut c = 0;
         for face in self.filling.faces() {
@@ -146,4 +151,21 @@ impl Refill {
         }
         slots
     }
+}
+
+/// For each pin inside `region` the new vertex nearest to it that no other has taken; it is put
+/// exactly there. O(pins · vertices).
+fn pins(mesh: &QuadMesh, region: &Region, places: &mut [Point]) -> Result<Vec<u32>, Refusal> {
+    let mut taken: Vec<u32> = Vec::new();
+    for at in region.interior.iter().filter(|&&v| mesh.is_pin(v)).map(|&v| mesh.position(v)) {
+        let free = (0..places.len() as u32).filter(|i| !taken.contains(i));
+        let nearest = free.min_by(|&i, &j| {
+            let from = |i: u32| (places[i as usize] - at).norm_squared();
+            from(i).total_cmp(&from(j))
+        });
+        let nearest = nearest.ok_or(Refusal::Held)?;
+        places[nearest as usize] = at;
+        taken.push(nearest);
+    }
+    Ok(taken)
 }

@@ -55,7 +55,7 @@ pub enum Stop {
     NotADisk,
     /// It is empty.
     Empty,
-    /// A vertex inside is held.
+    /// A vertex inside is held by a boundary or feature.
     Held,
 }
 
@@ -79,11 +79,11 @@ impl Grower {
         }
     }
 
-    /// Takes in a face, or the faces around a vertex that nothing holds.
+    /// Takes in a face, or the faces around a vertex that no boundary or feature holds.
     pub fn add(&mut self, mesh: &QuadMesh, v: Vertex) {
         if mesh.is_face(v) {
             self.add_face(mesh, v);
-        } else if !mesh.is_held(v) {
+        } else if !mesh.is_held(v) || mesh.is_pin(v) {
             mesh.neighbours(v).for_each(|f| self.add_face(mesh, f));
         }
     }
@@ -233,7 +233,7 @@ impl Grower {
             region.rim_irregularity_after += (inside - at.wanted).unsigned_abs();
         }
         region.interior = self.interior(mesh, &rim);
-        if region.interior.iter().any(|&v| mesh.is_held(v)) {
+        if region.interior.iter().any(|&v| mesh.is_held(v) && !mesh.is_pin(v)) {
             return Err(Stop::Held);
         }
         region.irregularity += region.interior.iter().map(|&v| mesh.irregularity(v)).sum::<u32>();

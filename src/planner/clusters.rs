@@ -62,7 +62,7 @@ impl Clusters {
             if v != seed && mesh.irregularity(v) > 0 {
                 found.push(v);
             }
-            if mesh.is_held(v) {
+            if mesh.is_held(v) && !mesh.is_pin(v) {
                 continue;
             }
             for w in mesh.neighbours(v).filter(|&w| !mesh.is_ghost(w)) {

@@ -133,7 +133,9 @@ pub struct Shape {
 }
 
 /// Quads below this scaled Jacobian must not become worse all together.
-const POOR: f64 = 0.2;
+const POOR: f64 = 0.4;
+/// Share of the normals at the corners of a quad that must agree on which side is out.
+const AGREED: f64 = 0.5;
 
 /// Judges edits; keeps its arrays from one to the next.
 #[derive(Debug, Clone, Default)]
@@ -307,11 +309,9 @@ impl Gate {
             }
             points.clear();
             points.extend(mesh.neighbours(f).map(|v| mesh.position(v)));
-            let corner = mesh.target(mesh.out(f));
-            let up = contact.near(corner).map_or_else(Vector::zeros, |t| {
-                setting.reference.normal(t) * setting.orientation.sign()
-            });
-            shape.add(&points, &up);
+            let near = mesh.neighbours(f).filter_map(|v| contact.near(v));
+            let up: Vector = near.map(|t| setting.reference.normal(t)).sum();
+            shape.add(&points, &(up * setting.orientation.sign()));
         }
         shape
     }
@@ -394,10 +394,11 @@ impl Shape {
     pub fn is_about_as_good_as(&self, other: &Self) -> bool {
         self.inverted <= other.inverted
             && self.deficit <= other.deficit + 0.02
-            && self.jacobian >= 0.6 * other.jacobian.clamp(0.0, POOR)
+            && self.jacobian >= other.jacobian.min(POOR)
     }
 
-    /// Adds a face; `up` decides which way round a quad is meant to be.
+    /// Adds a face. A quad against whose area most of `up`, the sum of the unit normals of the
+    /// reference at its corners, points is turned over; at a crease they do not agree enough to say.
     fn add(&mut self, points: &[Point], up: &Vector) {
         let n = points.len();
         let ideal = 180.0 - 360.0 / n as f64;
@@ -408,7 +409,8 @@ impl Shape {
                 .map(|i| (points[i] - points[0]).cross(&(points[i + 1] - points[0])))
                 .sum::<Vector>()
         };
-        let along = if normal.dot(up) < 0.0 { -1.0 } else { 1.0 };
+        let over = normal.dot(up) < -AGREED * n as f64 * normal.norm();
+        let along = if over { -1.0 } else { 1.0 };
         let mut least: f64 = 1.0;
         let unit = normal.try_normalize(0.0).unwrap_or_else(Vector::zeros);
         for i in 0..n {

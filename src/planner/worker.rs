@@ -334,7 +334,8 @@ impl Worker {
                 continue;
             }
             let gain = region.irregularity - after;
-            let edit = Edit::Refill(Refill::new(&self.mesh, region, filling));
+            let Ok(refill) = Refill::new(&self.mesh, region, filling) else { continue };
+            let edit = Edit::Refill(refill);
             let found = self.attempt(seed, (gain, 0.0, edit), sweeps, context, outcome);
             match found {
                 Ok(p) if best.as_ref().is_none_or(|b| p.angle_growth < b.angle_growth) => {

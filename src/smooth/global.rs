@@ -6,6 +6,7 @@ use super::anchors::{pull, watched};
 use super::guard::{Budget, Finding, Guard, Limits, Mending};
 use super::kernel::Setting;
 use super::region::{Orientation, Region, orientation};
+use super::untangle::untangle;
 use super::{RelaxOptions, SmoothOptions};
 use crate::mesh::{NONE, Point, PolyMesh, Topology};
 use crate::surface::{Deviation, Reference};
@@ -94,7 +95,7 @@ fn limits(
         hausdorff: scaled(start.deviation.hausdorff),
         rms: scaled(start.deviation.rms),
     });
-    Limits { budget, jacobian: options.least_jacobian.min(start.least_jacobian) }
+    Limits { budget, jacobian: options.least_jacobian }
 }
 
 /// The whole mesh as a region.
@@ -178,14 +179,16 @@ impl<'a> Work<'a> {
         }
         self.region.kernel.land(self.guard.reference, &self.setting);
         self.region.kernel.fit(self.guard.reference, &self.setting, self.options.fit);
+        self.mesh.set_points(self.region.kernel.vertices.iter().map(|v| v.point).collect());
+        let surface = (self.guard.reference, self.setting.sign);
+        untangle(&mut self.mesh, &self.region.kernel, surface, self.options.least_jacobian);
     }
 
     /// Checks the limits and undoes moves where they are broken until they are kept.
     fn mend(&mut self) -> (Vec<Point>, Finding) {
         let kernel = &self.region.kernel;
-        let smoothed: Vec<Point> = kernel.vertices.iter().map(|v| v.point).collect();
-        let mut mending = Mending::new(self.original.points().to_vec(), smoothed.clone());
-        self.mesh.set_points(smoothed);
+        let smoothed = self.mesh.points().to_vec();
+        let mut mending = Mending::new(self.original.points().to_vec(), smoothed);
         let mut found = self.guard.check(&self.mesh);
         let mut broken = found.broken(&self.start, &self.limits);
         for _ in 0..self.options.mend_rounds {

@@ -11,8 +11,8 @@ use crate::surface::{Deviation, Hit, Reference};
 /// How far the mesh may be from the reference, both ways, in units of the file.
 pub type Budget = Deviation;
 
-/// A quad that was sound must keep at least this scaled Jacobian whatever the limit is.
-const SOUND: f64 = 0.02;
+/// What rounding may take from a scaled Jacobian.
+const ROUNDING: f64 = 1e-9;
 
 /// The limits, and the samples that they are checked on.
 pub(super) struct Guard<'a> {
@@ -42,7 +42,7 @@ pub(super) struct Finding {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Limits {
     pub(super) budget: Budget,
-    /// Least scaled Jacobian.
+    /// Least scaled Jacobian of a quad that was not worse before.
     pub(super) jacobian: f64,
 }
 
@@ -117,10 +117,8 @@ impl Finding {
     /// Faces that break a limit, ascending; if the mean square does, those that have added most
     /// to it since `start`.
     pub(super) fn broken(&self, start: &Self, limits: &Limits) -> Vec<u32> {
-        let sound =
-            |f: usize| if start.jacobian[f] > 0.0 { start.jacobian[f].min(SOUND) } else { -1.0 };
         let bad = |f: usize| {
-            self.jacobian[f] < limits.jacobian.max(sound(f))
+            self.jacobian[f] < limits.jacobian.min(start.jacobian[f]) - ROUNDING
                 || self.flipped[f] && !start.flipped[f]
                 || self.far[f] > limits.budget.hausdorff
         };

@@ -36,6 +36,7 @@ pub enum QuadKind {
 pub(super) const FACE: u32 = 1;
 pub(super) const GHOST: u32 = 2;
 pub(super) const HELD: u32 = 4;
+pub(super) const PIN: u32 = 8;
 
 /// The √CC mesh. Every write is journaled and can be undone exactly.
 #[derive(Debug, Clone, Default)]
@@ -182,11 +183,18 @@ impl QuadMesh {
         self.class[v as usize] & GHOST != 0
     }
 
-    /// Whether `v` is a p-vertex on a boundary or feature: it stays where it is.
+    /// Whether `v` is a p-vertex on a boundary or feature, or a pin: it stays where it is.
     #[inline]
     #[must_use]
     pub fn is_held(&self, v: Vertex) -> bool {
-        self.class[v as usize] & HELD != 0
+        self.class[v as usize] & (HELD | PIN) != 0
+    }
+
+    /// Whether `v` is held by itself alone, see [`Self::pin`].
+    #[inline]
+    #[must_use]
+    pub fn is_pin(&self, v: Vertex) -> bool {
+        self.class[v as usize] & (HELD | PIN) == PIN
     }
 
     /// What the quad stands for.
@@ -265,9 +273,10 @@ impl QuadMesh {
         (0..self.quad_ids()).filter(|&q| self.is_quad_alive(q) && self.kind(q) != QuadKind::Ghost)
     }
 
-    /// Holds a p-vertex in place for good: edits keep it and do not move it. Not journaled.
-    pub fn hold(&mut self, v: Vertex) {
-        self.class[v as usize] |= HELD;
+    /// Pins a p-vertex: edits may join it to others, but there will always be a vertex just here.
+    /// Not journaled.
+    pub fn pin(&mut self, v: Vertex) {
+        self.class[v as usize] |= PIN;
     }
 
     /// Moves a p-vertex. Journaled.
