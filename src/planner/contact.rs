@@ -100,29 +100,38 @@ impl Contact {
         chain.map(|i| (self.points[i as usize], self.distance[i as usize]))
     }
 
-    /// Hands the probes of the changed faces to the nearest of the faces there now. `changed` and
-    /// `around` are vertices of the edit; dead ones and p-vertices among them are passed over.
-    pub fn reassign(&mut self, mesh: &QuadMesh, changed: &[Vertex], around: &[Vertex]) {
+    /// Hands the probes of faces that have changed or moved to the nearest of those there now.
+    /// `changed` are the vertices that an edit has changed or moved.
+    pub fn reassign(&mut self, mesh: &QuadMesh, changed: &[Vertex]) {
         self.first.resize(mesh.vertex_ids() as usize, NONE);
+        let is_alive = |&&v: &&Vertex| mesh.is_alive(v) && !mesh.is_ghost(v);
+        let moved = changed.iter().filter(is_alive).filter(|&&v| !mesh.is_face(v));
+        let mut faces: Vec<Vertex> = moved.flat_map(|&v| mesh.neighbours(v)).collect();
+        faces.extend(changed.iter().filter(|&&v| mesh.is_face(v)));
+        faces.sort_unstable();
+        faces.dedup();
         let mut loose = Vec::new();
-        for &f in changed {
+        for &f in &faces {
             let mut probe = std::mem::replace(&mut self.first[f as usize], NONE);
             while probe != NONE {
                 loose.push(probe);
                 probe = self.next[probe as usize];
             }
         }
-        let is_face = |&&v: &&Vertex| mesh.is_alive(v) && mesh.is_face(v) && !mesh.is_ghost(v);
-        let mut faces: Vec<Vertex> =
-            changed.iter().chain(around).filter(is_face).copied().collect();
-        faces.sort_unstable();
-        faces.dedup();
+        faces.retain(|&f| mesh.is_alive(f) && !mesh.is_ghost(f));
+        let corners = |&f: &Vertex| mesh.neighbours(f).map(|v| mesh.position(v)).collect();
+        let balls: Vec<Ball> = faces.iter().map(|f| Ball::new(corners(f))).collect();
         for probe in loose {
             let at = self.points[probe as usize];
-            let distances = faces.iter().map(|&f| (distance_to_face(mesh, f, &at), f));
-            let nearest = distances.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            if let Some((squared, f)) = nearest {
-                self.put(probe, f, squared.sqrt());
+            let mut nearest = (f64::INFINITY, NONE);
+            for (ball, &f) in balls.iter().zip(&faces) {
+                let squared = ball.nearer(&at, nearest.0);
+                if squared < nearest.0 {
+                    nearest = (squared, f);
+                }
+            }
+            if nearest.1 != NONE {
+                self.put(probe, nearest.1, nearest.0.sqrt());
             }
         }
     }
@@ -134,11 +143,28 @@ impl Contact {
     }
 }
 
-/// Squared distance to a face, taken as triangles around its middle.
-fn distance_to_face(mesh: &QuadMesh, f: Vertex, at: &Point) -> f64 {
-    let corners: smallvec::SmallVec<[Point; 8]> =
-        mesh.neighbours(f).map(|v| mesh.position(v)).collect();
-    fan_distance(&corners, at)
+/// A face and a ball around it.
+pub(super) struct Ball {
+    pub(super) corners: smallvec::SmallVec<[Point; 8]>,
+    middle: Point,
+    radius: f64,
+}
+
+impl Ball {
+    pub(super) fn new(corners: smallvec::SmallVec<[Point; 8]>) -> Self {
+        let middle = middle_of(&corners);
+        let radius = corners.iter().map(|p| (p - middle).norm()).fold(0.0, f64::max);
+        Self { corners, middle, radius }
+    }
+
+    /// The squared distance from `at`, or `least` if that is not more.
+    pub(super) fn nearer(&self, at: &Point, least: f64) -> f64 {
+        let gap = (at - self.middle).norm() - self.radius;
+        if gap > 0.0 && gap * gap >= least {
+            return least;
+        }
+        fan_distance(&self.corners, at).min(least)
+    }
 }
 
 /// Squared distance from `at` to a polygon, taken as triangles around its middle.

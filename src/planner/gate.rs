@@ -4,7 +4,7 @@
 //! still good or as good as before, corner angles have not grown worse by more than the exchange
 //! rate λ per irregular element removed, and the surface is within the budget, both ways.
 
-use super::contact::{Contact, fan_distance, middle_of};
+use super::contact::{Ball, Contact, fan_distance, middle_of};
 use crate::knobs::knobs;
 use crate::mesh::{Point, Vector};
 use crate::smooth::{Orientation, Region as Patch, RelaxOptions, relax_local};
@@ -355,30 +355,6 @@ impl Gate {
 
     fn points_of(&self, face: u32) -> SmallVec<[Point; 8]> {
         self.patch.face(face as usize).iter().map(|&v| self.patch.point(v)).collect()
-    }
-}
-
-/// A face and a ball around it.
-struct Ball {
-    corners: SmallVec<[Point; 8]>,
-    middle: Point,
-    radius: f64,
-}
-
-impl Ball {
-    fn new(corners: SmallVec<[Point; 8]>) -> Self {
-        let middle = middle_of(&corners);
-        let radius = corners.iter().map(|p| (p - middle).norm()).fold(0.0, f64::max);
-        Self { corners, middle, radius }
-    }
-
-    /// The squared distance from `at`, or `least` if that is not more.
-    fn nearer(&self, at: &Point, least: f64) -> f64 {
-        let gap = (at - self.middle).norm() - self.radius;
-        if gap > 0.0 && gap * gap >= least {
-            return least;
-        }
-        fan_distance(&self.corners, at).min(least)
     }
 }
 

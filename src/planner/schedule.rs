@@ -251,7 +251,7 @@ impl Schedule {
                 contact.set_near(v, triangle);
                 taken.insert(v);
             }
-            contact.reassign(mesh, &mesh.touched_since(mark), &proposal.core);
+            contact.reassign(mesh, &mesh.touched_since(mark));
             self.record(proposal, gain, planned.0);
             made += 1;
         }
