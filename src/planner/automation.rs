@@ -46,10 +46,10 @@ impl Automation<'_> {
     /// Edits and smooths `mesh`; what was done. If cancelled, the mesh is valid and smoothed as
     /// far as it got.
     pub fn run(&self, mesh: &mut QuadMesh, watch: &dyn Watch) -> Result<Schedule, MeshError> {
-        let mut schedule = Schedule::new();
         let faces = mesh.vertices().filter(|&v| mesh.is_face(v)).count();
+        let start = faces as i64;
+        let mut schedule = Schedule::new(Size { start, now: start, drift: self.plan.size_drift });
         let mut contact = Contact::new(self.reference, faces);
-        let size = Size { start: mesh.quads_alive(), drift: self.plan.size_drift };
         contact.attach(mesh, self.reference)?;
         let floor = contact.probe_count() as f64 * self.budget.rms.powi(2);
         let allowed = self.gate.rms.powi(2) * contact.squared_distances().max(floor);
@@ -59,7 +59,7 @@ impl Automation<'_> {
             let (lambda, faces) = (self.plan.lambda(i), self.plan.patch_faces(i));
             schedule.restart(allowed - contact.squared_distances());
             for stage in [Stage::Moves, Stage::Refills { faces }] {
-                self.rounds((mesh, &mut contact), &mut schedule, (stage, lambda, size), watch);
+                self.rounds((mesh, &mut contact), &mut schedule, (stage, lambda), watch);
             }
             if i + 1 < self.plan.stages {
                 self.smooth(mesh, self.plan.smooth_between, watch)?;
@@ -67,7 +67,7 @@ impl Automation<'_> {
         }
         contact.attach(mesh, self.reference)?;
         schedule.restart(allowed - contact.squared_distances());
-        let types = (Stage::Types, self.plan.lambda_types, size);
+        let types = (Stage::Types, self.plan.lambda_types);
         self.rounds((mesh, &mut contact), &mut schedule, types, watch);
         self.smooth(mesh, self.smooth.iterations, watch)?;
         Ok(schedule)
@@ -78,7 +78,7 @@ impl Automation<'_> {
         &self,
         (mesh, contact): (&mut QuadMesh, &mut Contact),
         schedule: &mut Schedule,
-        (stage, lambda, size): (Stage, f64, Size),
+        (stage, lambda): (Stage, f64),
         watch: &dyn Watch,
     ) {
         schedule.restart(schedule.slack());
@@ -91,7 +91,7 @@ impl Automation<'_> {
             growth: GREED * schedule.slack().max(0.0) / mesh.total_irregularity().max(1) as f64,
             cover: (self.gate.cover_edges * self.mean_edge).min(self.hausdorff()),
         };
-        let task = Task { stage, lambda, plan: self.plan, costs: self.costs, size, gate };
+        let task = Task { stage, lambda, plan: self.plan, costs: self.costs, gate };
         for _ in 0..self.plan.rounds {
             if watch.cancelled() || !schedule.round((mesh, contact), &task, watch) {
                 return;

@@ -49,8 +49,8 @@ knobs! {
         patch_faces_last: u32 = 1500, in 0.0..=100_000.0, "faces";
         /// Fillings of a patch that are judged.
         fillings: u32 = 3, in 1.0..=20.0, "count";
-        /// Largest |ln| of the number of edges of the mesh over that of the input.
-        size_drift: f64 = 0.06, in 0.0..=3.0, "ln";
+        /// Largest |ln| of the number of faces over that of the input.
+        size_drift: f64 = 0.07, in 0.0..=3.0, "ln";
         /// Iterations of smoothing before the first stage and after each.
         smooth_between: u32 = 40, in 0.0..=5000.0, "count";
     }

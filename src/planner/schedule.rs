@@ -9,7 +9,7 @@ use super::contact::Contact;
 use super::edit::Edit;
 use super::gate::{Failure, shape_of};
 use super::worker::{
-    Context, FORGIVING, MOST_LOSS, Outcome, Proposal, RefillKey, Stage, Task, Worker,
+    Context, FORGIVING, MOST_LOSS, Outcome, Proposal, RefillKey, Size, Stage, Task, Worker,
 };
 use crate::mesh::Point;
 use crate::sqrtcc::{QuadMesh, Vertex};
@@ -81,6 +81,7 @@ pub struct Schedule {
     spacing: Spacing,
     /// What edits may still add to Σ squared distance of the probes.
     slack: f64,
+    size: Size,
     /// The edits made so far.
     pub edits: Vec<EditRecord>,
     /// The rounds so far.
@@ -88,10 +89,10 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// Nothing done yet; one worker for each thread of the pool that it is called in.
+    /// Nothing done yet to a mesh of this size; one worker for each thread of the pool that it is
+    /// called in.
     #[must_use]
-    #[expect(clippy::new_without_default, reason = "depends on the thread pool")]
-    pub fn new() -> Self {
+    pub fn new(size: Size) -> Self {
         let workers = (0..=rayon::current_num_threads()).map(|_| Mutex::default()).collect();
         Self {
             workers,
@@ -102,6 +103,7 @@ impl Schedule {
             hopeless: FxHashMap::default(),
             spacing: Spacing::default(),
             slack: 0.0,
+            size,
             edits: Vec::new(),
             rounds: Vec::new(),
         }
@@ -192,7 +194,7 @@ impl Schedule {
         for worker in &self.workers {
             lock(worker).sync(mesh);
         }
-        let context = Context { task, contact, hopeless: &self.hopeless };
+        let context = Context { task, contact, size: self.size, hopeless: &self.hopeless };
         let done = std::sync::atomic::AtomicUsize::new(0);
         let left = mesh.total_irregularity() as usize;
         seeds
@@ -232,7 +234,7 @@ impl Schedule {
             if !proposal.touched.iter().all(free) {
                 continue;
             }
-            if !self.affordable(mesh, &proposal, task) {
+            if !self.affordable(&proposal) {
                 self.fail(proposal.seed, task, scope, 0.0);
                 continue;
             }
@@ -260,13 +262,14 @@ impl Schedule {
     }
 
     /// Whether the mesh stays within its limits of size and distance.
-    fn affordable(&self, mesh: &QuadMesh, proposal: &Proposal, task: &Task) -> bool {
+    fn affordable(&self, proposal: &Proposal) -> bool {
         let near = proposal.distance_growth <= self.slack.max(0.0);
-        near && task.size.allows(mesh, proposal.quads_added)
+        near && self.size.allows(proposal.faces_added)
     }
 
     fn record(&mut self, proposal: Proposal, gain: i32, planned: u32) {
         self.slack -= proposal.distance_growth;
+        self.size.now += proposal.faces_added;
         for &v in proposal.core.iter().filter(|&&v| v < planned) {
             self.changed[v as usize] = self.round;
         }

@@ -31,8 +31,8 @@ pub struct Proposal {
     pub shape: Shape,
     /// Growth of Σ squared distance of the probes, in squared units of the file.
     pub distance_growth: f64,
-    /// Change of the number of quads of Q (edges of the polygon mesh).
-    pub quads_added: i64,
+    /// Change of the number of faces.
+    pub faces_added: i64,
     /// Vertices whose connectivity it changes: sorted.
     pub touched: Vec<Vertex>,
     /// Those and their neighbours: sorted.
@@ -122,30 +122,35 @@ pub struct Task<'a> {
     pub plan: &'a PlanOptions,
     /// The weights of the steps.
     pub costs: &'a CostOptions,
-    /// How large the mesh may get.
-    pub size: Size,
     /// The gate.
     pub gate: Setting<'a>,
 }
 
-/// How large the mesh may get, in quads of Q.
+/// How many faces the mesh may have.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Size {
-    /// Quads at the start.
+    /// Faces at the start.
     pub start: i64,
-    /// Largest |ln| of the number of quads over that of the start.
+    /// Faces now.
+    pub now: i64,
+    /// Largest |ln| of the number of faces over that of the start.
     pub drift: f64,
 }
 
 impl Size {
-    /// Whether so many more quads keep within the limit, or at least come nearer to it.
+    /// Whether so many more faces keep within the limit, or at least come nearer to it.
     #[must_use]
-    pub fn allows(self, mesh: &QuadMesh, added: i64) -> bool {
-        let drift = |quads: i64| (quads as f64 / self.start.max(1) as f64).ln().abs();
-        let now = mesh.quads_alive();
-        let after = drift(now + added);
-        after <= self.drift || after <= drift(now)
+    pub fn allows(self, added: i64) -> bool {
+        let drift = |faces: i64| (faces as f64 / self.start.max(1) as f64).ln().abs();
+        let after = drift(self.now + added);
+        after <= self.drift || after <= drift(self.now)
     }
+}
+
+/// How many of the vertices are faces that exist.
+fn count_faces(mesh: &QuadMesh, vertices: &[Vertex]) -> i64 {
+    let exists = |&&v: &&Vertex| v < mesh.vertex_ids() && mesh.is_alive(v);
+    vertices.iter().filter(exists).filter(|&&v| mesh.is_face(v)).count() as i64
 }
 
 /// A copy of the mesh, and the arrays that planning needs.
@@ -171,6 +176,8 @@ pub struct Context<'a> {
     pub task: &'a Task<'a>,
     /// Where the mesh touches the reference.
     pub contact: &'a Contact,
+    /// How large the mesh is and may get.
+    pub size: Size,
     /// Refills that are known to fail.
     pub hopeless: &'a FxHashMap<RefillKey, f64>,
 }
@@ -359,18 +366,19 @@ impl Worker {
     ) -> Result<Proposal, f64> {
         let task = context.task;
         let mark = self.mesh.mark();
-        let (quads, planned) = (self.mesh.quads_alive(), self.mesh.quad_ids());
+        let planned = self.mesh.quad_ids();
         edit.run(&mut self.mesh, planned).map_err(|_| f64::INFINITY)?;
         let touched = self.mesh.touched_since(mark);
         let core = self.with_neighbours(&touched);
-        let quads_added = self.mesh.quads_alive() - quads;
+        let faces_after = count_faces(&self.mesh, &touched);
         let judged = self.gate.judge(
             &mut self.mesh,
             mark,
             (&task.gate, context.contact),
             (sweeps, gain.max(1), task.lambda),
         );
-        let in_size = task.size.allows(&self.mesh, quads_added);
+        let faces_added = faces_after - count_faces(&self.mesh, &touched);
+        let in_size = context.size.allows(faces_added);
         match judged.and_then(|passed| in_size.then_some(passed).ok_or(Failure::Size.into())) {
             Ok(Passed { angle_growth, shape, distance_growth, moved }) => Ok(Proposal {
                 edit,
@@ -380,7 +388,7 @@ impl Worker {
                 angle_growth,
                 shape,
                 distance_growth,
-                quads_added,
+                faces_added,
                 touched,
                 core,
                 moved,

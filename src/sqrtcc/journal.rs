@@ -14,7 +14,6 @@ pub(super) enum Slot {
     Position,
     NewVertex,
     NewQuad,
-    QuadDied,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -72,7 +71,6 @@ impl QuadMesh {
                 }
                 Slot::NewVertex => self.pop_vertex(),
                 Slot::NewQuad => self.pop_quad(),
-                Slot::QuadDied => self.quads_alive += 1,
             }
         }
     }
@@ -92,7 +90,7 @@ impl QuadMesh {
             .filter_map(|e| match e.slot {
                 Slot::Out | Slot::Valence | Slot::Position => Some([e.index, e.index]),
                 Slot::Origin => Some([e.old, self.origin[e.index as usize]]),
-                Slot::Twin | Slot::NewVertex | Slot::NewQuad | Slot::QuadDied => None,
+                Slot::Twin | Slot::NewVertex | Slot::NewQuad => None,
             })
             .flatten()
             .filter(|&v| v != crate::mesh::NONE)
@@ -115,6 +113,5 @@ impl QuadMesh {
         self.twin.truncate(self.twin.len() - 4);
         self.kind.pop();
         self.ideal.truncate(self.ideal.len() - 2);
-        self.quads_alive -= 1;
     }
 }

@@ -52,7 +52,6 @@ pub struct QuadMesh {
     pub(super) class: Vec<u32>,
     pub(super) group: Vec<u32>,
     pub(super) position: Vec<Point>,
-    pub(super) quads_alive: u32,
     pub(super) journal: Journal,
 }
 
@@ -146,13 +145,6 @@ impl QuadMesh {
     #[must_use]
     pub fn quad_ids(&self) -> u32 {
         self.kind.len() as u32
-    }
-
-    /// Quads in use, ghosts included.
-    #[inline]
-    #[must_use]
-    pub fn quads_alive(&self) -> i64 {
-        i64::from(self.quads_alive)
     }
 
     /// Whether `v` is in use.
@@ -328,8 +320,6 @@ impl QuadMesh {
             self.set_origin(h, NONE);
             self.set_twin(h, NONE);
         }
-        self.journal.record(Slot::QuadDied, 0, 0);
-        self.quads_alive -= 1;
     }
 
     /// A new vertex of the colour and group of `like`, neither held nor ghost, not yet connected.
@@ -354,7 +344,6 @@ impl QuadMesh {
         self.twin.extend([NONE; 4]);
         self.kind.push(QuadKind::Free as u32);
         self.ideal.extend([0; 2]);
-        self.quads_alive += 1;
         self.quad_ids() - 1
     }
 }
