@@ -3,12 +3,12 @@
 use super::PlanOptions;
 use super::contact::Contact;
 use super::cost::CostOptions;
-use super::gate::{GateOptions, Setting};
+use super::gate::{GateOptions, Setting, shape_of};
 use super::schedule::Schedule;
 use super::worker::{Size, Stage, Task};
 use crate::mesh::MeshError;
 use crate::smooth::{self, Budget, Orientation, RelaxOptions, SmoothOptions};
-use crate::sqrtcc::{QuadMesh, lower};
+use crate::sqrtcc::{QuadMesh, Vertex, lower};
 use crate::surface::{Reference, deviation};
 use crate::watch::Watch;
 
@@ -69,8 +69,21 @@ impl Automation<'_> {
         schedule.restart(allowed - contact.squared_distances());
         let types = (Stage::Types, self.plan.lambda_types);
         self.rounds((mesh, &mut contact), &mut schedule, types, watch);
+        self.release_pins(mesh);
         self.smooth(mesh, self.smooth.iterations, watch)?;
         Ok(schedule)
+    }
+
+    /// Lets the pins of quads that are still poor move: a crease is not worth a folded quad.
+    fn release_pins(&self, mesh: &mut QuadMesh) {
+        let is_poor = |f: &Vertex| {
+            mesh.is_face(*f) && shape_of(mesh, [*f].into_iter()).jacobian() < self.gate.min_jacobian
+        };
+        let poor: Vec<Vertex> = mesh.vertices().filter(is_poor).collect();
+        for f in poor {
+            let pins: Vec<Vertex> = mesh.neighbours(f).filter(|&v| mesh.is_pin(v)).collect();
+            pins.into_iter().for_each(|v| mesh.unpin(v));
+        }
     }
 
     /// Rounds of one kind until nothing more is found.

@@ -104,6 +104,14 @@ pub fn shape_of(mesh: &QuadMesh, faces: impl Iterator<Item = Vertex>) -> Shape {
     shape
 }
 
+impl Shape {
+    /// Least scaled Jacobian of the quads.
+    #[must_use]
+    pub fn jacobian(&self) -> f64 {
+        self.jacobian
+    }
+}
+
 /// An edit that did not pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rejected {

@@ -271,6 +271,11 @@ impl QuadMesh {
         self.class[v as usize] |= PIN;
     }
 
+    /// Lets a pin move again. Not journaled.
+    pub fn unpin(&mut self, v: Vertex) {
+        self.class[v as usize] &= !PIN;
+    }
+
     /// Moves a p-vertex. Journaled.
     pub fn set_position(&mut self, v: Vertex, point: Point) {
         self.journal.record_point(v, self.position[v as usize]);
