@@ -88,6 +88,11 @@ impl Grower {
         }
     }
 
+    /// Takes in the faces around the origin of `h`, within the sector of `h`.
+    pub fn add_sector(&mut self, mesh: &QuadMesh, h: HalfEdge) {
+        mesh.sector(h).for_each(|h| self.add_face(mesh, mesh.target(h)));
+    }
+
     /// Takes in every face across a rim edge that is not frozen.
     pub fn add_ring(&mut self, mesh: &QuadMesh) {
         for i in 0..self.faces.len() {
@@ -110,33 +115,12 @@ impl Grower {
             for i in 0..rim.len() {
                 let sector = self.sector_inside(mesh, rim[(i + rim.len() - 1) % rim.len()], rim[i]);
                 if sector.wanted > 2 && sector.outside > 0 {
-                    self.fill_dent(mesh, rim[i]);
+                    self.add_sector(mesh, mesh.twin(rim[i]));
                 }
             }
             if self.faces.len() == before {
                 return self.region(mesh, rim);
             }
-        }
-    }
-
-    /// Takes in the faces around the vertex at the start of a rim edge, within its sector.
-    fn fill_dent(&mut self, mesh: &QuadMesh, rim: HalfEdge) {
-        let start = mesh.twin(rim);
-        let mut h = start;
-        loop {
-            self.add_face(mesh, mesh.target(h));
-            if mesh.is_frozen(QuadMesh::quad(h)) {
-                break;
-            }
-            h = mesh.ccw(h);
-            if h == start {
-                return;
-            }
-        }
-        h = start;
-        while !mesh.is_frozen(QuadMesh::quad(mesh.twin(h))) {
-            h = mesh.cw(h);
-            self.add_face(mesh, mesh.target(h));
         }
     }
 
@@ -193,31 +177,12 @@ impl Grower {
         let v = mesh.origin(out);
         let excess = mesh.excess(out);
         // Of a held vertex only the sector of the region counts.
-        let total = mesh.valence(v) as i32;
-        let outside =
-            if mesh.is_held(v) { self.outside_in_sector(mesh, out) } else { total - inside };
+        let outside = if mesh.is_held(v) {
+            mesh.sector(out).filter(|&h| !self.holds(mesh.target(h))).count() as i32
+        } else {
+            mesh.valence(v) as i32 - inside
+        };
         RimVertex { wanted: inside - excess, outside, excess }
-    }
-
-    fn outside_in_sector(&self, mesh: &QuadMesh, out: HalfEdge) -> i32 {
-        let mut first = out;
-        while !mesh.is_frozen(QuadMesh::quad(mesh.twin(first))) {
-            first = mesh.cw(first);
-            if first == out {
-                break;
-            }
-        }
-        let (mut h, mut outside) = (first, 0);
-        loop {
-            outside += i32::from(!self.holds(mesh.target(h)));
-            if mesh.is_frozen(QuadMesh::quad(h)) {
-                return outside;
-            }
-            h = mesh.ccw(h);
-            if h == first {
-                return outside;
-            }
-        }
     }
 
     fn region(&self, mesh: &QuadMesh, rim: Vec<HalfEdge>) -> Result<Region, Stop> {

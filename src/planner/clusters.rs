@@ -2,7 +2,7 @@
 
 use crate::mesh::NONE;
 use crate::patch::{Grower, Region};
-use crate::sqrtcc::{QuadMesh, Vertex};
+use crate::sqrtcc::{HalfEdge, QuadMesh, Vertex};
 
 /// How far and how large the search for regions goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,8 +26,27 @@ impl Clusters {
     /// alone, and with the first two, three, … of them together. Only regions whose irregularity
     /// can fall are given. O(faces · regions).
     pub fn around(&mut self, mesh: &QuadMesh, seed: Vertex, limits: Limits) -> Vec<Region> {
-        let partners = self.nearest(mesh, seed, limits);
         let mut regions: Vec<Region> = Vec::new();
+        if mesh.is_held(seed) && !mesh.is_pin(seed) {
+            for sector in mesh.sectors(seed).filter(|&h| mesh.excess(h) != 0) {
+                self.around_sector(mesh, sector, limits, &mut regions);
+            }
+        } else {
+            self.around_sector(mesh, mesh.out(seed), limits, &mut regions);
+        }
+        regions.sort_by_key(|r| r.faces.len());
+        regions
+    }
+
+    /// Adds the regions around the origin of `at` on the side of `at`.
+    fn around_sector(
+        &mut self,
+        mesh: &QuadMesh,
+        at: HalfEdge,
+        limits: Limits,
+        regions: &mut Vec<Region>,
+    ) {
+        let partners = self.nearest(mesh, at, limits);
         let keep = |region: Option<Region>, regions: &mut Vec<Region>| {
             let Some(region) = region else { return };
             let known = regions
@@ -37,20 +56,19 @@ impl Clusters {
                 regions.push(region);
             }
         };
-        keep(self.grow(mesh, seed, &[], limits.faces), &mut regions);
+        keep(self.grow(mesh, at, &[], limits.faces), regions);
         for i in 0..partners.len() {
-            keep(self.grow(mesh, seed, &partners[i..=i], limits.faces), &mut regions);
-            keep(self.grow(mesh, seed, &partners[..=i], limits.faces), &mut regions);
+            keep(self.grow(mesh, at, &partners[i..=i], limits.faces), regions);
+            keep(self.grow(mesh, at, &partners[..=i], limits.faces), regions);
         }
         for v in std::mem::take(&mut self.visited) {
             self.parent[v as usize] = NONE;
         }
-        regions.sort_by_key(|r| r.faces.len());
-        regions
     }
 
-    /// The irregular elements nearest to `seed`, by steps in Q that do not cross frozen lines.
-    fn nearest(&mut self, mesh: &QuadMesh, seed: Vertex, limits: Limits) -> Vec<Vertex> {
+    /// The irregular elements nearest to the origin of `at` on the side of `at`, by steps in Q that do not cross frozen lines.
+    fn nearest(&mut self, mesh: &QuadMesh, at: HalfEdge, limits: Limits) -> Vec<Vertex> {
+        let seed = mesh.origin(at);
         self.parent.resize(mesh.vertex_ids() as usize, NONE);
         self.parent[seed as usize] = seed;
         self.visited.push(seed);
@@ -62,34 +80,47 @@ impl Clusters {
             if v != seed && mesh.irregularity(v) > 0 {
                 found.push(v);
             }
-            if mesh.is_held(v) && !mesh.is_pin(v) {
-                continue;
-            }
-            for w in mesh.neighbours(v).filter(|&w| !mesh.is_ghost(w)) {
-                if self.parent[w as usize] == NONE {
-                    self.parent[w as usize] = v;
-                    self.visited.push(w);
-                }
+            if v == seed {
+                mesh.sector(at).for_each(|h| self.visit(mesh, mesh.target(h), v));
+            } else if !mesh.is_held(v) || mesh.is_pin(v) {
+                mesh.neighbours(v).for_each(|w| self.visit(mesh, w, v));
             }
         }
         found
     }
 
-    /// The convex disk around the seed and the paths to the partners.
+    fn visit(&mut self, mesh: &QuadMesh, v: Vertex, from: Vertex) {
+        if self.parent[v as usize] == NONE && !mesh.is_ghost(v) {
+            self.parent[v as usize] = from;
+            self.visited.push(v);
+        }
+    }
+
+    /// The convex disk around the origin of `start`, on its side, and the paths to the partners.
     fn grow(
         &mut self,
         mesh: &QuadMesh,
-        seed: Vertex,
+        start: HalfEdge,
         partners: &[Vertex],
         most: usize,
     ) -> Option<Region> {
         self.grower.start(mesh);
-        self.grower.add(mesh, seed);
+        let seed = mesh.origin(start);
+        if mesh.is_face(seed) {
+            self.grower.add_face(mesh, seed);
+        } else {
+            self.grower.add_sector(mesh, start);
+        }
         for &partner in partners {
             let mut at = partner;
             while at != seed {
-                self.grower.add(mesh, at);
-                at = self.parent[at as usize];
+                let from = self.parent[at as usize];
+                if mesh.is_face(at) {
+                    self.grower.add_face(mesh, at);
+                } else if let Some(h) = mesh.find(at, from) {
+                    self.grower.add_sector(mesh, h);
+                }
+                at = from;
             }
         }
         self.grower.convex(mesh, most).ok()

@@ -4,6 +4,7 @@
 //! Source: Peng & Wonka 2013, section 2.1, extended to features.
 
 use super::{HalfEdge, QuadMesh, Vertex};
+use crate::mesh::NONE;
 
 impl QuadMesh {
     /// How many faces (or edges, for a d-vertex) there are too many around `origin(h)` in the
@@ -12,8 +13,10 @@ impl QuadMesh {
     pub fn excess(&self, h: HalfEdge) -> i32 {
         let v = self.origin(h);
         if self.is_held(v) {
-            let (count, ideal) = self.sector(h);
-            return count as i32 - ideal as i32;
+            let sector = self.sector(h);
+            let is_bounded = self.is_frozen(Self::quad(self.twin(sector.first)));
+            let ideal = if is_bounded { self.ideal[self.ideal_slot(sector.first)] } else { 4 };
+            return sector.count() as i32 - i32::from(ideal);
         }
         self.valence(v) as i32 - 4
     }
@@ -24,13 +27,31 @@ impl QuadMesh {
         if self.is_ghost(v) {
             return 0;
         }
-        let begins_sector = |&h: &HalfEdge| self.is_frozen(Self::quad(self.twin(h)));
-        if !self.is_held(v) || !self.outgoing(v).any(|h| begins_sector(&h)) {
+        if !self.is_held(v) || self.is_pin(v) {
             return self.valence(v).abs_diff(4);
         }
-        let real =
-            self.outgoing(v).filter(begins_sector).filter(|&h| !self.is_ghost(self.target(h)));
-        real.map(|h| self.excess(h).unsigned_abs()).sum()
+        self.sectors(v).map(|h| self.excess(h).unsigned_abs()).sum()
+    }
+
+    /// The first half-edge (clockwise end) of each sector of `v` that belongs to the polygon mesh;
+    /// none if no frozen quad is at `v`. O(valence).
+    pub fn sectors(&self, v: Vertex) -> impl Iterator<Item = HalfEdge> + '_ {
+        let begins = |&h: &HalfEdge| self.is_frozen(Self::quad(self.twin(h)));
+        self.outgoing(v).filter(begins).filter(|&h| !self.is_ghost(self.target(h)))
+    }
+
+    /// The half-edges in the sector of `h` out of its origin, counter-clockwise; all there are if
+    /// no frozen quad is at the origin. O(valence).
+    #[must_use]
+    pub fn sector(&self, h: HalfEdge) -> Sector<'_> {
+        let mut first = h;
+        while !self.is_frozen(Self::quad(self.twin(first))) {
+            first = self.cw(first);
+            if first == h {
+                break;
+            }
+        }
+        Sector { mesh: self, first, at: first }
     }
 
     /// Σ irregularity over all vertices and faces: E of the plan.
@@ -39,27 +60,33 @@ impl QuadMesh {
         self.vertices().map(|v| u64::from(self.irregularity(v))).sum()
     }
 
-    /// Number of faces in the sector of `h` and the ideal number.
-    fn sector(&self, h: HalfEdge) -> (u32, u32) {
-        let mut first = h;
-        while !self.is_frozen(Self::quad(self.twin(first))) {
-            first = self.cw(first);
-            if first == h {
-                return (self.valence(self.origin(h)), 4);
-            }
-        }
-        let (mut count, mut last) = (1, first);
-        while !self.is_frozen(Self::quad(last)) {
-            last = self.ccw(last);
-            count += 1;
-        }
-        (count, u32::from(self.ideal[self.ideal_slot(first)]))
-    }
-
     /// Where the ideal of the sector that begins with `first` is kept: at the frozen quad on its
     /// clockwise side, at the p-corner of the origin.
     pub(super) fn ideal_slot(&self, first: HalfEdge) -> usize {
         let corner = Self::next(self.twin(first));
         2 * Self::quad(corner) as usize + (corner as usize & 3) / 2
+    }
+}
+
+/// Walks the half-edges of a sector, see [`QuadMesh::sector`].
+#[derive(Debug, Clone)]
+pub struct Sector<'a> {
+    mesh: &'a QuadMesh,
+    first: HalfEdge,
+    at: HalfEdge,
+}
+
+impl Iterator for Sector<'_> {
+    type Item = HalfEdge;
+
+    fn next(&mut self) -> Option<HalfEdge> {
+        if self.at == NONE {
+            return None;
+        }
+        let h = self.at;
+        let after = self.mesh.ccw(h);
+        let ends = self.mesh.is_frozen(QuadMesh::quad(h)) || after == self.first;
+        self.at = if ends { NONE } else { after };
+        Some(h)
     }
 }
