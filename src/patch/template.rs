@@ -377,14 +377,15 @@ fn chords(polygon: &Polygon, most: usize) -> Vec<Chord> {
                     let spokes = parts.each_ref().map(|part| with_last(part, length));
                     if let [Some(a), Some(b)] = spokes.map(|part| double_spokes(&part)) {
                         let chord = Chord { from, start, to, end, length };
-                        scored.push((imbalance(&a, &b, length), chord));
+                        let feet = feet(polygon, chord, [&a, &b]);
+                        scored.push((imbalance(&a, &b, length), chord, feet));
                     }
                 }
             }
         }
     }
     scored.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
-    distinct(scored, most)
+    distinct(scored, polygon.rim.len(), most)
 }
 
 /// Long sides are tried at some twenty places only.
@@ -428,18 +429,45 @@ fn imbalance(a: &[u32], b: &[u32], length: u32) -> f64 {
     spread(a) + spread(b) + 0.01 * f64::from(length)
 }
 
-/// The first few that do not give the same two sets of spokes.
-fn distinct(scored: Vec<(f64, Chord)>, most: usize) -> Vec<Chord> {
-    let mut chosen: Vec<(f64, Chord)> = Vec::new();
-    for (score, chord) in scored {
+/// Where the spokes of the two elements that a chord separates meet the rim, in half edges from
+/// its start: the same for all chords that cut the same filling, and near for near ones.
+type Feet = smallvec::SmallVec<[u32; 8]>;
+
+fn feet(polygon: &Polygon, chord: Chord, spokes: [&[u32]; 2]) -> Feet {
+    let (k, turn) = (polygon.corners.len(), 2 * polygon.rim.len() as u32);
+    let part = |from: usize, start: u32, spokes: &[u32]| {
+        let mut feet: Feet = (0..spokes.len() - 1)
+            .map(|i| {
+                let begins = polygon.corners[(from + i) % k] as u32 + if i == 0 { start } else { 0 };
+                (2 * begins + spokes[(i + spokes.len() - 1) % spokes.len()]) % turn
+            })
+            .collect();
+        feet.sort_unstable();
+        feet
+    };
+    let mut both =
+        [part(chord.from, chord.start, spokes[0]), part(chord.to, chord.end, spokes[1])];
+    both.sort();
+    both.into_iter().flatten().collect()
+}
+
+/// The first few whose spokes meet the rim at clearly different places.
+fn distinct(scored: Vec<(f64, Chord, Feet)>, rim: usize, most: usize) -> Vec<Chord> {
+    let turn = 2 * rim as u32;
+    let apart = |a: u32, b: u32| a.abs_diff(b).min(turn - a.abs_diff(b));
+    let clear = (turn / 32).max(2);
+    let differs =
+        |a: &Feet, b: &Feet| a.len() != b.len() || a.iter().zip(b).any(|(&a, &b)| apart(a, b) >= clear);
+    let mut chosen: Vec<(Chord, Feet)> = Vec::new();
+    for (_, chord, feet) in scored {
         if chosen.len() == most {
             break;
         }
-        if chosen.iter().all(|(s, _)| (s - score).abs() > 0.3) {
-            chosen.push((score, chord));
+        if chosen.iter().all(|(_, other)| differs(other, &feet)) {
+            chosen.push((chord, feet));
         }
     }
-    chosen.into_iter().map(|(_, chord)| chord).collect()
+    chosen.into_iter().map(|(chord, _)| chord).collect()
 }
 
 /// Cuts a polygon along a chord, whose inner vertices are new.
