@@ -61,6 +61,11 @@ impl Automation<'_> {
             for stage in [Stage::Moves, Stage::Refills { faces }] {
                 self.rounds((mesh, &mut contact), &mut schedule, (stage, lambda), watch);
             }
+            if self.plan.relocations > 0 {
+                let relocate = (Stage::Relocations { faces }, -self.plan.relocation_saves);
+                self.rounds((mesh, &mut contact), &mut schedule, relocate, watch);
+                self.rounds((mesh, &mut contact), &mut schedule, (Stage::Refills { faces }, lambda), watch);
+            }
             if i + 1 < self.plan.stages {
                 self.smooth(mesh, self.plan.smooth_between, watch)?;
             }
@@ -105,7 +110,8 @@ impl Automation<'_> {
             cover: (self.gate.cover_edges * self.mean_edge).min(self.hausdorff()),
         };
         let task = Task { stage, lambda, plan: self.plan, costs: self.costs, gate };
-        for _ in 0..self.plan.rounds {
+        let most = match stage { Stage::Relocations { .. } => self.plan.relocations, _ => self.plan.rounds };
+        for _ in 0..most {
             if watch.cancelled() || !schedule.round((mesh, contact), &task, watch) {
                 return;
             }

@@ -11,6 +11,8 @@ pub struct Limits {
     pub faces: usize,
     /// How many of the nearest irregular elements are joined to the seed.
     pub partners: usize,
+    /// How many elements fewer a region must be able to have.
+    pub least_gain: u32,
 }
 
 /// Finds regions; keeps its arrays from one seed to the next.
@@ -52,7 +54,7 @@ impl Clusters {
             let known = regions
                 .iter()
                 .any(|r| r.rim.len() == region.rim.len() && r.faces.len() == region.faces.len());
-            if !known && least_after(&region) < region.irregularity {
+            if !known && least_after(&region) + limits.least_gain <= region.irregularity {
                 regions.push(region);
             }
         };
@@ -131,7 +133,7 @@ impl Clusters {
 fn least_after(region: &Region) -> u32 {
     let inside = match region.corners.len() {
         k @ 2..=6 => k.abs_diff(4) as u32,
-        _ => return u32::MAX,
+        _ => return u32::MAX / 2,
     };
     inside + region.rim_irregularity_after
 }

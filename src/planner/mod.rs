@@ -33,6 +33,10 @@ knobs! {
         lambda_types: f64 = 150.0, in 0.0..=100_000.0, "degree-corners";
         /// Most rounds of moves, and most rounds of refills, in a stage.
         rounds: u32 = 30, in 0.0..=1000.0, "count";
+        /// Most rounds of moving elements to where they fit better, in a stage.
+        relocations: u32 = 1, in 0.0..=1000.0, "count";
+        /// What moving elements to a better place must save at least.
+        relocation_saves: f64 = 40.0, in 0.0..=100_000.0, "degree-corners";
         /// Irregular elements that are planned for in the same round are this far apart.
         spacing: u32 = 2, in 0.0..=100.0, "steps in Q";
         /// Most steps that a dislocation walks.

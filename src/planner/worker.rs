@@ -109,6 +109,12 @@ pub enum Stage {
         /// Most faces.
         faces: usize,
     },
+    /// Refills that leave as many elements, at places that suit the surface better. The exchange
+    /// rate is negative: what must be saved.
+    Relocations {
+        /// Most faces.
+        faces: usize,
+    },
 }
 
 /// All that a worker needs to know.
@@ -198,7 +204,10 @@ impl Worker {
             Stage::Moves => self.propose_move(seed, context, &mut outcome),
             Stage::Types => self.propose_type_change(seed, context, &mut outcome),
             Stage::Refills { faces } => {
-                self.propose_refill((seed, faces), context, &mut outcome);
+                self.propose_refill((seed, faces, 1), context, &mut outcome);
+            }
+            Stage::Relocations { faces } => {
+                self.propose_refill((seed, faces, 0), context, &mut outcome);
             }
         }
         outcome.scope.sort_unstable();
@@ -302,17 +311,18 @@ impl Worker {
 
     fn propose_refill(
         &mut self,
-        (seed, faces): (Vertex, usize),
+        (seed, faces, least_gain): (Vertex, usize, u32),
         context: Context,
         outcome: &mut Outcome,
     ) {
-        let limits = Limits { faces, partners: context.task.plan.partners as usize };
+        let partners = context.task.plan.partners as usize;
+        let limits = Limits { faces, partners, least_gain };
         let regions = self.clusters.around(&self.mesh, seed, limits);
         if let Some(largest) = regions.last() {
             outcome.scope.extend(largest.faces.iter().chain(&largest.interior));
         }
         for region in regions {
-            if let Some(best) = self.best_filling(seed, &region, context, outcome) {
+            if let Some(best) = self.best_filling((seed, least_gain), &region, context, outcome) {
                 outcome.proposal = Some(best);
                 return;
             }
@@ -322,7 +332,7 @@ impl Worker {
     /// The filling of a region that passes with the least growth of angles.
     fn best_filling(
         &mut self,
-        seed: Vertex,
+        (seed, least_gain): (Vertex, u32),
         region: &Region,
         context: Context,
         outcome: &mut Outcome,
@@ -337,7 +347,7 @@ impl Worker {
             let growth = (filling.face_count() as f64 / region.faces.len() as f64).ln().abs();
             let known =
                 context.hopeless.get(&key).is_some_and(|&needs| needs > FORGIVING * task.lambda);
-            if after >= region.irregularity || growth > task.gate.options.area || known {
+            if after + least_gain > region.irregularity || growth > task.gate.options.area || known {
                 continue;
             }
             let gain = region.irregularity - after;
