@@ -22,7 +22,7 @@ use quadmend::watch::Silent;
 const REACH: u16 = 16;
 /// Dislocations, and patches, that are measured together.
 const SEEDS: usize = 50;
-const LIMITS: Limits = Limits { faces: 200, partners: 6 };
+const LIMITS: Limits = Limits { faces: 200, partners: 6, least_gain: 1 };
 
 struct Input {
     name: &'static str,

@@ -169,15 +169,15 @@ fn regions_with_three_to_six_corners_are_refilled() {
     assert!(sum.by_corners[3..=6].iter().all(|&n| n > 0), "{sum:?}");
 }
 
-/// Vertices may be held although no boundary or feature passes through them.
+/// Whatever is refilled around a pin, there is a pinned vertex just there.
 #[test]
-fn lone_held_vertices_stay() {
+fn pins_stay_in_place_while_their_surroundings_are_refilled() {
     for seed in 0..4 {
         let mut dice = Dice(seed);
         let mesh = shapes::sphere(8);
         let mut q = lift(&mesh, &no_features(&mesh)).expect("a sphere");
         for v in (0..mesh.vertex_count() as u32).step_by(23) {
-            q.hold(v);
+            q.pin(v);
         }
         mess_up(&mut q, &mut dice, 20);
         refill_everywhere(&mut q, &mut dice, 20);

@@ -13,6 +13,7 @@ use quadmend::ops::{Flip, Op, Turn};
 use quadmend::patch::fillings;
 use quadmend::pipeline;
 use quadmend::planner::cost::CostOptions;
+use quadmend::planner::edit::Edit;
 use quadmend::planner::local;
 use quadmend::planner::movement::{Cancellation, MovementGraph};
 use quadmend::sqrtcc::{QuadMesh, Vertex, lift, lower};
@@ -262,6 +263,7 @@ fn a_messed_up_shape_becomes_clean() {
         ("disk", disk(), 4, 20),
         ("disk", disk(), 5, 40),
     ];
+    let mut relocations = 0;
     for (name, (regular, reference), seed, edits) in cases {
         let mut q = lifted(&regular);
         mess_up(&mut q, &mut Dice(seed), edits);
@@ -278,7 +280,13 @@ fn a_messed_up_shape_becomes_clean() {
         assert_eq!(boundary(&cleaned.mesh), boundary(&messy), "{name} {seed}: boundary");
         assert!(after.manifold && after.oriented && after.gauss_bonnet_exact, "{name} {seed}");
         assert!(after.degenerate.connectivity.is_clean(), "{name} {seed}");
+        for edit in cleaned.report.edits.iter().filter(|e| matches!(e.edit, Edit::Refill(_))) {
+            let pays = edit.gain > 0 || edit.angle_growth_deg <= -config.plan.relocation_saves;
+            assert!(pays, "{name} {seed}: a refill for nothing");
+            relocations += usize::from(edit.gain == 0);
+        }
     }
+    assert!(relocations > 0, "what stays is moved to where it fits better");
 }
 
 /// Without a reference the input is the surface to stay on.

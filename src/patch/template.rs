@@ -438,15 +438,15 @@ fn feet(polygon: &Polygon, chord: Chord, spokes: [&[u32]; 2]) -> Feet {
     let part = |from: usize, start: u32, spokes: &[u32]| {
         let mut feet: Feet = (0..spokes.len() - 1)
             .map(|i| {
-                let begins = polygon.corners[(from + i) % k] as u32 + if i == 0 { start } else { 0 };
+                let begins =
+                    polygon.corners[(from + i) % k] as u32 + if i == 0 { start } else { 0 };
                 (2 * begins + spokes[(i + spokes.len() - 1) % spokes.len()]) % turn
             })
             .collect();
         feet.sort_unstable();
         feet
     };
-    let mut both =
-        [part(chord.from, chord.start, spokes[0]), part(chord.to, chord.end, spokes[1])];
+    let mut both = [part(chord.from, chord.start, spokes[0]), part(chord.to, chord.end, spokes[1])];
     both.sort();
     both.into_iter().flatten().collect()
 }
@@ -456,8 +456,9 @@ fn distinct(scored: Vec<(f64, Chord, Feet)>, rim: usize, most: usize) -> Vec<Cho
     let turn = 2 * rim as u32;
     let apart = |a: u32, b: u32| a.abs_diff(b).min(turn - a.abs_diff(b));
     let clear = (turn / 32).max(2);
-    let differs =
-        |a: &Feet, b: &Feet| a.len() != b.len() || a.iter().zip(b).any(|(&a, &b)| apart(a, b) >= clear);
+    let differs = |a: &Feet, b: &Feet| {
+        a.len() != b.len() || a.iter().zip(b).any(|(&a, &b)| apart(a, b) >= clear)
+    };
     let mut chosen: Vec<(Chord, Feet)> = Vec::new();
     for (_, chord, feet) in scored {
         if chosen.len() == most {

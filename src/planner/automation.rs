@@ -1,4 +1,4 @@
-//! The automation: stage after stage of moves, refills and smoothing.
+//! The automation: stage after stage of moves, refills, relocations and smoothing.
 
 use super::PlanOptions;
 use super::contact::Contact;
@@ -58,13 +58,16 @@ impl Automation<'_> {
             contact.attach(mesh, self.reference)?;
             let (lambda, faces) = (self.plan.lambda(i), self.plan.patch_faces(i));
             schedule.restart(allowed - contact.squared_distances());
-            for stage in [Stage::Moves, Stage::Refills { faces }] {
-                self.rounds((mesh, &mut contact), &mut schedule, (stage, lambda), watch);
+            let refills = (Stage::Refills { faces }, lambda);
+            for step in [(Stage::Moves, lambda), refills] {
+                self.rounds((mesh, &mut contact), &mut schedule, step, watch);
             }
             if self.plan.relocations > 0 {
-                let relocate = (Stage::Relocations { faces }, -self.plan.relocation_saves);
-                self.rounds((mesh, &mut contact), &mut schedule, relocate, watch);
-                self.rounds((mesh, &mut contact), &mut schedule, (Stage::Refills { faces }, lambda), watch);
+                // What has moved may be near enough to others now to cancel.
+                let relocations = (Stage::Relocations { faces }, -self.plan.relocation_saves);
+                for step in [relocations, refills] {
+                    self.rounds((mesh, &mut contact), &mut schedule, step, watch);
+                }
             }
             if i + 1 < self.plan.stages {
                 self.smooth(mesh, self.plan.smooth_between, watch)?;
@@ -87,7 +90,9 @@ impl Automation<'_> {
         let poor: Vec<Vertex> = mesh.vertices().filter(is_poor).collect();
         for f in poor {
             let pins: Vec<Vertex> = mesh.neighbours(f).filter(|&v| mesh.is_pin(v)).collect();
-            pins.into_iter().for_each(|v| mesh.unpin(v));
+            for v in pins {
+                mesh.unpin(v);
+            }
         }
     }
 
@@ -110,8 +115,11 @@ impl Automation<'_> {
             cover: (self.gate.cover_edges * self.mean_edge).min(self.hausdorff()),
         };
         let task = Task { stage, lambda, plan: self.plan, costs: self.costs, gate };
-        let most = match stage { Stage::Relocations { .. } => self.plan.relocations, _ => self.plan.rounds };
-        for _ in 0..most {
+        let rounds = match stage {
+            Stage::Relocations { .. } => self.plan.relocations,
+            _ => self.plan.rounds,
+        };
+        for _ in 0..rounds {
             if watch.cancelled() || !schedule.round((mesh, contact), &task, watch) {
                 return;
             }

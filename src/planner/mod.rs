@@ -23,18 +23,18 @@ knobs! {
     /// How edits are searched for.
     pub struct PlanOptions in "plan" {
         /// Stages, each with a larger exchange rate and larger patches.
-        stages: u32 = 4, in 0.0..=20.0, "count";
+        stages: u32 = 5, in 0.0..=20.0, "count";
         /// Exchange rate of the first stage.
         lambda_first: f64 = 80.0, in 0.0..=100_000.0, "degree-corners per element";
         /// Exchange rate of the last stage.
-        lambda_last: f64 = 1000.0, in 0.0..=100_000.0, "degree-corners per element";
+        lambda_last: f64 = 1500.0, in 0.0..=100_000.0, "degree-corners per element";
         /// What a T-junction may cost to be turned into a dual one (a triangle and a vertex of five
         /// edges) at the end.
         lambda_types: f64 = 150.0, in 0.0..=100_000.0, "degree-corners";
         /// Most rounds of moves, and most rounds of refills, in a stage.
         rounds: u32 = 30, in 0.0..=1000.0, "count";
         /// Most rounds of moving elements to where they fit better, in a stage.
-        relocations: u32 = 1, in 0.0..=1000.0, "count";
+        relocations: u32 = 2, in 0.0..=1000.0, "count";
         /// What moving elements to a better place must save at least.
         relocation_saves: f64 = 40.0, in 0.0..=100_000.0, "degree-corners";
         /// Irregular elements that are planned for in the same round are this far apart.
@@ -46,13 +46,13 @@ knobs! {
         /// Candidates of each kind that are judged for an element.
         tries: u32 = 3, in 1.0..=50.0, "count";
         /// Nearest irregular elements that a patch around an element may take in.
-        partners: u32 = 9, in 0.0..=50.0, "count";
+        partners: u32 = 12, in 0.0..=50.0, "count";
         /// Most faces of a patch in the first stage.
         patch_faces_first: u32 = 60, in 0.0..=100_000.0, "faces";
         /// Most faces of a patch in the last stage.
-        patch_faces_last: u32 = 1500, in 0.0..=100_000.0, "faces";
+        patch_faces_last: u32 = 2500, in 0.0..=100_000.0, "faces";
         /// Fillings of a patch that are judged.
-        fillings: u32 = 3, in 1.0..=20.0, "count";
+        fillings: u32 = 4, in 1.0..=20.0, "count";
         /// Largest |ln| of the number of faces over that of the input.
         size_drift: f64 = 0.07, in 0.0..=3.0, "ln";
         /// Iterations of smoothing before the first stage and after each.

@@ -347,7 +347,8 @@ impl Worker {
             let growth = (filling.face_count() as f64 / region.faces.len() as f64).ln().abs();
             let known =
                 context.hopeless.get(&key).is_some_and(|&needs| needs > FORGIVING * task.lambda);
-            if after + least_gain > region.irregularity || growth > task.gate.options.area || known {
+            if after + least_gain > region.irregularity || growth > task.gate.options.area || known
+            {
                 continue;
             }
             let gain = region.irregularity - after;

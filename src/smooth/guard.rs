@@ -11,8 +11,10 @@ use crate::surface::{Deviation, Hit, Reference};
 /// How far the mesh may be from the reference, both ways, in units of the file.
 pub type Budget = Deviation;
 
-/// What rounding may take from a scaled Jacobian.
-const ROUNDING: f64 = 1e-9;
+/// A quad that was sound must keep at least this scaled Jacobian whatever the limit is.
+const SOUND: f64 = 0.02;
+/// What a poor quad may lose for the good of those around it.
+const SLIP: f64 = 0.05;
 
 /// The limits, and the samples that they are checked on.
 pub(super) struct Guard<'a> {
@@ -117,8 +119,12 @@ impl Finding {
     /// Faces that break a limit, ascending; if the mean square does, those that have added most
     /// to it since `start`.
     pub(super) fn broken(&self, start: &Self, limits: &Limits) -> Vec<u32> {
+        let floor = |f: usize| {
+            let before = start.jacobian[f];
+            (limits.jacobian.min(before) - SLIP).max(before.min(SOUND))
+        };
         let bad = |f: usize| {
-            self.jacobian[f] < limits.jacobian.min(start.jacobian[f]) - ROUNDING
+            self.jacobian[f] < floor(f)
                 || self.flipped[f] && !start.flipped[f]
                 || self.far[f] > limits.budget.hausdorff
         };

@@ -64,7 +64,7 @@ knobs! {
         fit: f64 = 1.0, in 0.0..=1.0, "share";
         /// Allowed Hausdorff distance and root mean square, relative to those of the start.
         budget: f64 = 1.02, in 0.0..=10.0, "factor";
-        /// Scaled Jacobian below which no quad may fall, nor what is below it get worse.
+        /// Scaled Jacobian that smoothing aims at for every quad, and keeps where it was.
         least_jacobian: f64 = 0.45, in -1.0..=1.0, "scaled Jacobian";
         /// Most rounds of undoing moves where a limit was broken.
         mend_rounds: u32 = 12, in 0.0..=100.0, "count";

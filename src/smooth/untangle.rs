@@ -15,7 +15,7 @@ use rustc_hash::FxHashMap;
 
 /// Directions that are tried around a vertex.
 const DIRECTIONS: usize = 8;
-/// Length of the first step, in lengths of the shortest edge at the vertex.
+/// Length of the first step, in mean distances to the corners around.
 const FIRST: f64 = 0.4;
 /// Steps shorter than this are not tried, in the same unit.
 const LAST: f64 = 0.02;
@@ -76,7 +76,8 @@ impl Surroundings {
             all
         };
         let near = corners(poor);
-        let touching = |face: &[u32], set: &[u32]| face.iter().any(|v| set.binary_search(v).is_ok());
+        let touching =
+            |face: &[u32], set: &[u32]| face.iter().any(|v| set.binary_search(v).is_ok());
         let faces = |set: &[u32]| -> Vec<u32> {
             let all = mesh.faces().zip(0..);
             all.filter(|(face, _)| touching(face, set)).map(|(_, f)| f).collect()
@@ -117,20 +118,26 @@ impl Site<'_> {
             return false;
         }
         let Some([x, y]) = tangents(&normal) else { return false };
-        let edge = self.shortest_edge(points);
+        let ring = self.ring(points);
+        let reach = ring.iter().map(|p| (p - at).norm()).sum::<f64>() / ring.len() as f64;
+        let middle: Vector = ring.iter().map(|p| p.coords).sum::<Vector>() / ring.len() as f64;
         let mut best = (before + PROGRESS, at);
+        let mut attempt = |aim: &Point| {
+            let place = self.reference.closest_facing(aim, &normal, hit.triangle, reach).point;
+            points[self.v as usize] = place;
+            let now = self.worst(points, &normal);
+            if now > best.0 {
+                best = (now, place);
+            }
+        };
+        // From a fold no small step leads out.
+        attempt(&Point::from(middle));
         let mut step = FIRST;
         while step > LAST {
             for i in 0..DIRECTIONS {
                 let turn = (i as f64 + 0.5 * (pass % 2) as f64) / DIRECTIONS as f64;
                 let (sine, cosine) = (turn * std::f64::consts::TAU).sin_cos();
-                let aim = at + (x * cosine + y * sine) * (step * edge);
-                points[self.v as usize] =
-                    self.reference.closest_facing(&aim, &normal, hit.triangle, edge).point;
-                let now = self.worst(points, &normal);
-                if now > best.0 {
-                    best = (now, points[self.v as usize]);
-                }
+                attempt(&(at + (x * cosine + y * sine) * (step * reach)));
             }
             step *= 0.5;
         }
@@ -162,19 +169,10 @@ impl Site<'_> {
         self.faces.iter().filter(small).map(quality).fold(f64::INFINITY, f64::min)
     }
 
-    fn shortest_edge(&self, points: &[Point]) -> f64 {
-        let mut shortest = f64::INFINITY;
-        for &f in self.faces {
-            let face = self.mesh.face(f as usize);
-            let n = face.len();
-            for (k, _) in face.iter().enumerate().filter(|&(_, &w)| w == self.v) {
-                for other in [face[(k + 1) % n], face[(k + n - 1) % n]] {
-                    let length = (points[other as usize] - points[self.v as usize]).norm();
-                    shortest = shortest.min(length);
-                }
-            }
-        }
-        shortest
+    /// The other corners of the faces at the vertex; those across an edge twice.
+    fn ring(&self, points: &[Point]) -> Vec<Point> {
+        let corners = self.faces.iter().flat_map(|&f| self.mesh.face(f as usize));
+        corners.filter(|&&w| w != self.v).map(|&w| points[w as usize]).collect()
     }
 }
 

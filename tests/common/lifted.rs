@@ -101,7 +101,10 @@ pub(crate) fn fingerprint(q: &QuadMesh) -> String {
 /// The places of all held vertices, bit for bit.
 pub(crate) fn held_points(q: &QuadMesh) -> Vec<[u64; 3]> {
     let held = q.vertices().filter(|&v| q.is_held(v));
-    held.map(|v| q.position(v).coords.map(f64::to_bits).into()).collect()
+    let mut points: Vec<_> = held.map(|v| q.position(v).coords.map(f64::to_bits).into()).collect();
+    // A pin gets a new id when its surroundings are refilled.
+    points.sort_unstable();
+    points
 }
 
 /// The ends of all edges on boundaries and features.

@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+"""Switches off one part of the automation after the other and prints what is left of it.
+
+    python3 tools/ablation.py DATA [MESH ...] > docs/ablation.md
+
+DATA is a folder with NAME.obj and NAME.ref.obj; without MESH, all of them. Runs the release
+build (`cargo build --release`) with the default preset, one `--set` after the other. Figures are
+sums of irregular elements and geometric means of the ratio of angle deviation after to before.
+"""
+import json
+import math
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+PROGRAM = Path(__file__).resolve().parent.parent / "target" / "release" / "quadmend"
+
+# What is switched off, and the settings that do it.
+VARIANTS = [
+    ("nothing: the default", []),
+    ("moves (reductions, walks, type changes)", ["plan.depth=0", "plan.reach=0"]),
+    ("walks in the movement graph", ["plan.reach=0"]),
+    ("type changes of T-junctions at the end", ["plan.lambda_types=0"]),
+    ("refills and relocations", ["plan.patch_faces_first=0", "plan.patch_faces_last=0", "plan.relocations=0"]),
+    ("relocations", ["plan.relocations=0"]),
+    ("large patches (all at most 60 faces)", ["plan.patch_faces_last=60"]),
+    ("all fillings of a patch but the first", ["plan.fillings=1"]),
+    ("stages (one, at the last exchange rate)", ["plan.stages=1", "plan.lambda_first=1500", "plan.patch_faces_first=2500"]),
+    ("smoothing between stages", ["plan.smooth_between=0"]),
+    ("relaxing before an edit is judged", ["gate.sweeps=1", "gate.refill_sweeps=1"]),
+    ("cost of quads added or removed", ["cost.quads=0"]),
+    ("cost of type changes", ["cost.type_change=0"]),
+    ("cost of passing features", ["cost.near_feature=0"]),
+    ("cost of edge lengths", ["cost.edge_length=0"]),
+    ("cost of triple cancellations", ["cost.triple=0"]),
+    ("nothing, and curvature costs 1", ["cost.curvature=1"]),
+]
+
+
+def clean(data: Path, name: str, settings: list[str], folder: Path) -> dict:
+    report = folder / "report.json"
+    command = [PROGRAM, "clean", data / f"{name}.obj", "--reference", data / f"{name}.ref.obj"]
+    command += ["--output", folder / "clean.obj", "--json", report, "--quiet", "--force"]
+    for setting in settings:
+        command += ["--set", setting]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    return json.loads(report.read_text())
+
+
+def main() -> None:
+    data = Path(sys.argv[1])
+    names = sys.argv[2:] or sorted(p.name[: -len(".ref.obj")] for p in data.glob("*.ref.obj"))
+    print("| switched off | " + " | ".join(names) + " | Σ E | angle ratio | T |")
+    print("|---" * (len(names) + 4) + "|")
+    for title, settings in VARIANTS:
+        elements, angles, hanging = [], [], 0
+        with tempfile.TemporaryDirectory() as folder:
+            for name in names:
+                report = clean(data, name, settings, Path(folder))
+                before, after = report["before"]["summary"], report["after"]["summary"]
+                elements.append(after["irregular_elements"])
+                angles.append(math.log(after["fig10_mean"] / before["fig10_mean"]))
+                hanging += after["t_junctions"]
+        ratio = math.exp(sum(angles) / len(angles))
+        cells = [title, *map(str, elements), str(sum(elements)), f"{ratio:.3f}", str(hanging)]
+        print("| " + " | ".join(cells) + " |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
