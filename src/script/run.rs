@@ -2,7 +2,7 @@
 
 use super::address::Select;
 use super::error::{ScriptError, StepError, Trouble};
-use super::session::{Means, Session};
+use super::session::{Explained, Means, Session};
 use super::{Script, Step};
 use crate::config::Config;
 use crate::mesh::{MendPolicy, PolyMesh, Topology, check, mend};
@@ -90,7 +90,7 @@ pub fn edit(
             Err(error) => return Err(error.into()),
         }
         for trouble in std::mem::take(&mut session.passed_over) {
-            refused.push(session.explain(&trouble, (i + 1, step.name, step.line)));
+            refused.push(step.refused(i + 1, trouble));
         }
     }
     let names = session.group_names;
@@ -122,9 +122,17 @@ fn carry_out(
             })
         }
         Err(trouble) => {
+            // Named as it is now: what the step itself made is gone after the next line.
+            let explained = session.explain(&trouble);
             session.mesh_mut().undo_to(mark);
-            Err(session.explain(&trouble, (number, step.name, step.line)))
+            Err(step.refused(number, explained))
         }
+    }
+}
+
+impl Step {
+    fn refused(&self, number: usize, Explained { element, reason }: Explained) -> StepError {
+        StepError { number, operation: self.name, line: self.line, element, reason }
     }
 }
 
@@ -155,7 +163,8 @@ impl Session<'_> {
                     sum.ops.extend(done.ops);
                 }
                 Err(trouble) if self.keep_going && elements.len() > 1 => {
-                    self.passed_over.push(trouble.at(v));
+                    let explained = self.explain(&trouble.at(v));
+                    self.passed_over.push(explained);
                 }
                 Err(trouble) => return Err(trouble.at(v)),
             }

@@ -1,6 +1,6 @@
 //! The mesh while a script works on it, and what its elements are called.
 
-use super::error::{Reason, StepError, Trouble};
+use super::error::{Reason, Trouble};
 use crate::mesh::PolyMesh;
 use crate::smooth::{RelaxOptions, SmoothOptions};
 use crate::sqrtcc::{QuadMesh, Vertex};
@@ -19,7 +19,7 @@ pub struct Session<'a> {
     results: Vec<Vec<Vertex>>,
     pub(super) keep_going: bool,
     /// Elements of the step that were refused while going on.
-    pub(super) passed_over: Vec<Trouble>,
+    pub(super) passed_over: Vec<Explained>,
     pub(super) group_names: &'a [String],
     pub(super) reference: &'a Reference,
     pub(super) smooth: &'a SmoothOptions,
@@ -128,17 +128,20 @@ impl<'a> Session<'a> {
         format!("the {word} near ({x:.4}, {y:.4}, {z:.4})")
     }
 
-    /// A trouble in the words of the mesh that was read.
-    pub(super) fn explain(
-        &self,
-        trouble: &Trouble,
-        (number, operation, line): (usize, &'static str, usize),
-    ) -> StepError {
+    /// A trouble in the words of the mesh that was read: the element, if there is one, and the
+    /// reason.
+    pub(super) fn explain(&self, trouble: &Trouble) -> Explained {
         let reason = match &trouble.reason {
             Reason::Move(refusal) => refusal.words(&|v| self.name(v)),
             Reason::Other(words) => words.clone(),
         };
-        let element = trouble.at.map(|v| self.name(v));
-        StepError { number, operation, line, element, reason }
+        Explained { element: trouble.at.map(|v| self.name(v)), reason }
     }
+}
+
+/// A trouble in words.
+#[derive(Debug, Clone)]
+pub(super) struct Explained {
+    pub(super) element: Option<String>,
+    pub(super) reason: String,
 }

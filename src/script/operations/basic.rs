@@ -28,7 +28,7 @@ impl Operation for VertexSplit {
         let faces = [&self.from, &self.to].map(|face| face.one(session, Select::Faces));
         let [from, to] = faces;
         let faces = [from?, to?];
-        made(session, "new vertex", |mesh| vertex_split(mesh, v, faces)).map_err(|t| t.at(v))
+        made(session, "new: ", |mesh| vertex_split(mesh, v, faces)).map_err(|t| t.at(v))
     }
 }
 
@@ -46,7 +46,7 @@ impl Operation for EdgeInsertion {
         let face = self.at.one(session, Select::Faces)?;
         let [from, to] = [&self.from, &self.to].map(|v| v.one(session, Select::Vertices));
         let ends = [from?, to?];
-        made(session, "new face", |mesh| edge_insertion(mesh, face, ends)).map_err(|t| t.at(face))
+        made(session, "new: ", |mesh| edge_insertion(mesh, face, ends)).map_err(|t| t.at(face))
     }
 }
 
@@ -60,7 +60,7 @@ pub(super) struct EdgeCollapse {
 impl Operation for EdgeCollapse {
     fn run(&self, session: &mut Session, _: &dyn Watch) -> Result<Done, Trouble> {
         let ends = self.edge.find(session)?;
-        made(session, "left", |mesh| edge_collapse(mesh, ends)).map_err(|t| t.at(ends[0]))
+        made(session, "left: ", |mesh| edge_collapse(mesh, ends)).map_err(|t| t.at(ends[0]))
     }
 }
 
@@ -74,7 +74,7 @@ pub(super) struct EdgeDeletion {
 impl Operation for EdgeDeletion {
     fn run(&self, session: &mut Session, _: &dyn Watch) -> Result<Done, Trouble> {
         let ends = self.edge.find(session)?;
-        made(session, "left", |mesh| edge_deletion(mesh, ends)).map_err(|t| t.at(ends[0]))
+        made(session, "left: ", |mesh| edge_deletion(mesh, ends)).map_err(|t| t.at(ends[0]))
     }
 }
 
@@ -92,7 +92,7 @@ impl Operation for EdgeShift {
         let fixed = self.fixed.one(session, Select::Vertices)?;
         let [from, to] = [&self.from, &self.to].map(|v| v.one(session, Select::Vertices));
         let ends = [from?, to?];
-        made(session, "now at", |mesh| edge_shift(mesh, fixed, ends)).map_err(|t| t.at(fixed))
+        made(session, "now at ", |mesh| edge_shift(mesh, fixed, ends)).map_err(|t| t.at(fixed))
     }
 }
 
@@ -102,6 +102,6 @@ fn made(
     act: impl FnOnce(&mut QuadMesh) -> Result<Made, MoveRefusal>,
 ) -> Result<Done, Trouble> {
     let Made { op, element } = act(session.mesh_mut())?;
-    let words = format!("{word}: {}", session.name(element));
+    let words = format!("{word}{}", session.name(element));
     Ok(Done { words, results: vec![element], ops: vec![op] })
 }
