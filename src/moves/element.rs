@@ -65,7 +65,7 @@ impl fmt::Display for Kind {
     }
 }
 
-/// An irregular element of index ±1 that nothing holds.
+/// An irregular element of index ±1 that lies on no boundary or feature.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Element {
     /// Its number in Q.
@@ -80,7 +80,7 @@ impl Element {
         if v >= mesh.vertex_ids() || !mesh.is_alive(v) || mesh.is_ghost(v) {
             return Err(MoveRefusal::Gone(v));
         }
-        if mesh.is_held(v) {
+        if is_on_line(mesh, v) {
             return Err(MoveRefusal::Held(v));
         }
         let kind = match (mesh.valence(v), mesh.is_face(v)) {
@@ -97,4 +97,10 @@ impl Element {
     pub fn all(mesh: &QuadMesh) -> impl Iterator<Item = Self> + '_ {
         mesh.vertices().filter_map(|v| Self::at(mesh, v).ok())
     }
+}
+
+/// Whether `v` lies on a boundary or feature, where sectors count and not the valence. A pin keeps
+/// its place alone: its valence may be moved away from it.
+pub(crate) fn is_on_line(mesh: &QuadMesh, v: Vertex) -> bool {
+    mesh.is_held(v) && !mesh.is_pin(v)
 }

@@ -10,6 +10,7 @@
 //! *Invariant:* the vertices between the ends are regular and free, so the turns are quarters.
 
 use super::MoveRefusal;
+use super::element::is_on_line;
 use crate::sqrtcc::{HalfEdge, QuadMesh, Vertex};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::VecDeque;
@@ -203,7 +204,7 @@ pub(super) fn quarters(mesh: &QuadMesh, from: HalfEdge, to: HalfEdge) -> i32 {
 /// Whether a path may lead through `v`: four edges, and nothing holds it.
 fn is_regular(mesh: &QuadMesh, v: Vertex) -> bool {
     let known = v < mesh.vertex_ids() && mesh.is_alive(v);
-    known && mesh.valence(v) == 4 && !mesh.is_held(v) && !mesh.is_ghost(v)
+    known && mesh.valence(v) == 4 && !is_on_line(mesh, v) && !mesh.is_ghost(v)
 }
 
 /// Breadth first from `from` to `to`.

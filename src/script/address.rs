@@ -8,6 +8,7 @@ use super::error::Trouble;
 use super::session::Session;
 use crate::mesh::Point;
 use crate::moves::basic::edge_between;
+use crate::moves::element::is_on_line;
 use crate::moves::{Dipole, Element, Kind};
 use crate::sqrtcc::{HalfEdge, QuadMesh, Vertex};
 use serde::Deserialize;
@@ -47,7 +48,7 @@ impl Select {
     #[must_use]
     pub fn takes(self, mesh: &QuadMesh, v: Vertex) -> bool {
         let kind = |wanted| Element::at(mesh, v).is_ok_and(|element| element.kind == wanted);
-        let free = !mesh.is_held(v);
+        let free = !is_on_line(mesh, v);
         match self {
             Self::Vertices => !mesh.is_face(v),
             Self::Faces => mesh.is_face(v),
@@ -85,7 +86,7 @@ impl Select {
 
 /// The dislocation whose edge too few is at `v`.
 pub(super) fn dislocation(mesh: &QuadMesh, v: Vertex) -> Option<Dipole> {
-    let free = |d: &Dipole| !mesh.is_held(mesh.target(d.0));
+    let free = |d: &Dipole| !is_on_line(mesh, mesh.target(d.0));
     mesh.outgoing(v)
         .map(Dipole)
         .filter(|d| d.stands(mesh) && free(d))
