@@ -95,7 +95,7 @@ impl Ahead {
 pub fn predict(mesh: &QuadMesh, pair: [Dipole; 2], route: Route) -> Result<Outcome, MoveRefusal> {
     standing(mesh, pair)?;
     let [from, to] = [Ahead::Three.of(mesh, pair[0]), Ahead::Five.of(mesh, pair[1])];
-    let path = Path::find(mesh, from, to, route, &others(mesh, pair))?;
+    let path = Path::find(mesh, from, to, route, &[])?;
     outcome(mesh, pair, &path).ok_or(MoveRefusal::InTheWay)
 }
 
@@ -121,11 +121,6 @@ fn stands(mesh: &QuadMesh, dipole: Dipole) -> Result<(), MoveRefusal> {
     held.into_iter().find(|&v| is_on_line(mesh, v)).map_or(Ok(()), |v| Err(MoveRefusal::Held(v)))
 }
 
-/// The elements of both, where no path may lead through.
-fn others(mesh: &QuadMesh, pair: [Dipole; 2]) -> Vec<Vertex> {
-    pair.iter().flat_map(|d| [mesh.origin(d.0), mesh.target(d.0)]).collect()
-}
-
 /// The outcome of two dislocations at the ends of a path.
 fn outcome(mesh: &QuadMesh, [one, other]: [Dipole; 2], path: &Path) -> Option<Outcome> {
     let (first, last) = (*path.half_edges().first()?, *path.half_edges().last()?);
@@ -146,7 +141,8 @@ fn outcome(mesh: &QuadMesh, [one, other]: [Dipole; 2], path: &Path) -> Option<Ou
 ///   ──┴──  ──┬──     →    ─────────     complete, E falls by 4
 ///   ──┴──  ──┴──     →    v3 ─ ─ v5     one pair of one type is left, E falls by 2
 /// ```
-/// What will be left is known before anything is touched ([`predict`]). Refused if there is no
+/// What will be left is known before anything is touched: for the shortest path or the one that is
+/// given by [`predict`], and for others, where that one is blocked, in the same way. Refused if there is no
 /// path on which the move is legal and nothing else changes, or if the pair that is wanted does
 /// not come out on any. Source: Peng & Wonka 2013, Proposition 3.7, Figure 6.
 pub fn quadruple(

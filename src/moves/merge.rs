@@ -61,8 +61,8 @@ fn together(
     mut elements: [Vertex; 2],
     route: Route,
 ) -> Result<Merged, MoveRefusal> {
-    let mut ops = Vec::new();
-    for _ in 0..=REACH {
+    let (mut ops, mut store) = (Vec::new(), Vec::new());
+    for step in 0..=REACH {
         if let Some(quad) = across(mesh, elements) {
             let op = Collapse { edge: QuadMesh::next(quad) };
             let element = Collapse::apply(mesh, op.check(mesh)?);
@@ -72,6 +72,7 @@ fn together(
             ops.push(Op::Collapse(op));
             return Ok(Merged { element, ops });
         }
+        let route = if step == 0 { route } else { route.still(mesh, &mut store) };
         let moved = pair::shift(mesh, elements, Direction::Closer, 1, route)?;
         elements = moved.pair;
         ops.extend(moved.ops);

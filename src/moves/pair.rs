@@ -106,7 +106,9 @@ pub fn shift(
 ) -> Result<Moved, MoveRefusal> {
     let mark = mesh.mark();
     let mut done = Moved { pair, ops: Vec::new() };
-    for _ in 0..steps {
+    let mut store = Vec::new();
+    for step in 0..steps {
+        let route = if step == 0 { route } else { route.still(mesh, &mut store) };
         match once(mesh, done.pair, direction, route) {
             Ok(next) => {
                 done.pair = next.pair;

@@ -124,6 +124,14 @@ impl Route<'_> {
         store.extend(stops.iter().rev());
         Route::Through(store)
     }
+
+    /// The same way once a first step has been made: through the stops that are still regular.
+    pub(super) fn still<'a>(self, mesh: &QuadMesh, store: &'a mut Vec<Vertex>) -> Route<'a> {
+        let Self::Through(stops) = self else { return Route::Found };
+        store.clear();
+        store.extend(stops.iter().filter(|&&v| is_regular(mesh, v)));
+        Route::Through(store)
+    }
 }
 
 /// A walk along half-edges of Q between two elements.
