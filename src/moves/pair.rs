@@ -1,11 +1,18 @@
 //! Pair-wise movement: the only way to move a lone irregular element is together with another.
 //!
 //! ```text
-//!  opposite index: both translate          equal index: both change their separation
+//!  opposite index: both translate, in any of four directions
 //!
-//!   v3 ─ ─ ─ v5       v3'─ ─ ─ v5'          v5 ─ ─ ─ v5   closer      v5'─ ─ v5'
-//!        │       →      (by one edge         apart, rotate left or right: the separation
-//!        ▼                of Q)              changes by a diagonal of Q
+//!    v3 · · · · v5              f3 · · · · f5
+//!                       →
+//!     ·   ·   ·   ·   ·          ·   ·   ·   ·   ·
+//!
+//!  equal index: closer, apart, and around their midpoint both ways
+//!
+//!    v5 · · · · v5      →         f5 · · f5              closer
+//!
+//!                                 f5 ·
+//!    v5 · · · · v5      →              · · f5            rotated right
 //! ```
 //! One step moves each element by one edge of Q and so changes its type (v ↔ f); two steps keep
 //! it. The elements of opposite index move by the same vector in the lattice of the path between
