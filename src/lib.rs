@@ -16,6 +16,7 @@ pub mod ops;
 pub mod patch;
 pub mod pipeline;
 pub mod planner;
+pub mod script;
 pub mod smooth;
 pub mod sqrtcc;
 pub mod surface;

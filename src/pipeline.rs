@@ -11,7 +11,8 @@ use crate::planner::schedule::{EditRecord, RoundRecord, Schedule};
 use crate::smooth;
 use crate::sqrtcc::{LiftError, QuadMesh, lift, lower};
 use crate::surface::{
-    self, Deviation, Reference, SurfaceError, mean_edge, mesh_features, vertices_on_lines,
+    self, Deviation, FeatureOptions, Reference, SurfaceError, mean_edge, mesh_features,
+    vertices_on_lines,
 };
 use crate::watch::{Phase, Watch};
 use serde::Serialize;
@@ -139,7 +140,7 @@ fn edit(
     let reference = Reference::new(surface)?;
     let topology = Topology::new(mesh);
     let budget = budget(mesh, &reference, (&config.gate, mean_edge(mesh, &topology)))?;
-    let features = mesh_features(mesh, &topology, &reference, &config.features);
+    let (mut q, feature_edges) = lift_held(mesh, &topology, &reference, &config.features)?;
     let automation = Automation {
         reference: &reference,
         orientation: smooth::orientation(mesh, &reference),
@@ -151,12 +152,24 @@ fn edit(
         relax: &config.relax,
         smooth: &config.smooth,
     };
+    let schedule = automation.run(&mut q, watch)?;
+    Ok((q, feature_edges, schedule))
+}
+
+/// Lifts a clean mesh, its sharp features frozen and the vertices on feature lines of the
+/// reference held; also the number of feature edges.
+pub(crate) fn lift_held(
+    mesh: &PolyMesh,
+    topology: &Topology,
+    reference: &Reference,
+    options: &FeatureOptions,
+) -> Result<(QuadMesh, usize), LiftError> {
+    let features = mesh_features(mesh, topology, reference, options);
     let mut q = lift(mesh, &features)?;
-    for v in vertices_on_lines(mesh, &topology, &reference, &config.features) {
+    for v in vertices_on_lines(mesh, topology, reference, options) {
         q.pin(v);
     }
-    let schedule = automation.run(&mut q, watch)?;
-    Ok((q, features.count_ones(..) / 2, schedule))
+    Ok((q, features.count_ones(..) / 2))
 }
 
 /// The distance to the reference that cleaning must keep: that of the mesh as it is, or, where

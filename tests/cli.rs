@@ -320,12 +320,81 @@ fn the_configuration_shows_checks_and_explains_itself() {
     assert!(serde_json::from_str::<serde_json::Value>(&schema.ends(0).out).is_ok());
 }
 
+/// Cuts a pentagon and a triangle out of the grid, then smooths.
+const EDITS: &str = "
+    [[step]]
+    do = 'edge-shift'
+    fixed = { vertex = 41 }
+    from = { vertex = 42 }
+    to = { vertex = 33 }
+
+    [[step]]
+    do = 'smooth'
+    iterations = 3
+";
+
+#[test]
+fn edit_writes_the_mesh_and_logs_each_step() {
+    let bench = Bench::new();
+    bench.write("in.obj", &grid(8));
+    bench.write("edits.toml", EDITS);
+    let run = bench.run(["edit", "in.obj", "--script", "edits.toml", "-o", "out.obj"]);
+    run.ends(0);
+    assert_eq!(run.out, "");
+    assert!(run.err.contains("step 1: edge-shift: now at vertex 33 (E 0 → 4"), "{}", run.err);
+    assert!(run.err.contains("step 2: smooth: 3 iterations"), "{}", run.err);
+    let measured = bench.run(["metrics", "out.obj", "--json"]);
+    let measured: serde_json::Value = serde_json::from_str(&measured.ends(0).out).unwrap();
+    assert_eq!(measured["summary"]["irregular_elements"], 4);
+    // The same from a pipe, with the log as JSON.
+    let piped = ["edit", "-", "-s", "edits.toml", "-o", "-", "--json", "log.json", "-q"];
+    let piped = bench.run_with(&grid(8), piped);
+    assert_eq!((piped.ends(0).out.as_str(), piped.err.as_str()), (&*bench.read("out.obj"), ""));
+    let log: serde_json::Value = serde_json::from_str(&bench.read("log.json")).unwrap();
+    assert_eq!(
+        (&log["steps"][0]["ops"][0]["op"], &log["steps"][0]["after"]),
+        (&"flip".into(), &4.into())
+    );
+    let dry = bench.run(["edit", "in.obj", "--script", "edits.toml", "--dry-run", "-o", "dry.obj"]);
+    assert!(dry.ends(0).err.contains("step 2"), "{}", dry.err);
+    assert_eq!(bench.files(), ["edits.toml", "in.obj", "log.json", "out.obj"]);
+}
+
+#[test]
+fn a_wrong_script_never_changes_the_output() {
+    let bench = Bench::new();
+    bench.write("in.obj", &grid(8));
+    bench.write("out.obj", "as it was");
+    let refused = EDITS.replace("vertex = 33", "vertex = 1");
+    for (script, code, told) in [
+        (refused.as_str(), 3, &["step 1 (edge-shift, line 2)", "vertex 41", "not joined"][..]),
+        ("[[step]]\ndo = 'edge-shft'", 2, &["edits.toml:1", "did you mean `edge-shift`"]),
+        ("[[step]]\ndo = 'merge'", 2, &["edits.toml:1", "missing field `at`"]),
+        ("no = script", 2, &["edits.toml:1"]),
+    ] {
+        bench.write("edits.toml", script);
+        bench.run(["edit", "in.obj", "--script", "edits.toml", "-o", "out.obj"]).fails(code, told);
+        assert_eq!(bench.read("out.obj"), "as it was", "{script}");
+    }
+    let missing = ["edit", "in.obj", "--script", "none.toml", "-o", "out.obj"];
+    bench.run(missing).fails(2, &["none.toml"]);
+    bench.write("edits.toml", EDITS);
+    let over = ["edit", "in.obj", "--script", "edits.toml", "-o", "edits.toml"];
+    bench.run(over).fails(2, &["would be overwritten"]);
+    // Going on: the smoothing is made; alone, the refused step is nothing.
+    bench.write("edits.toml", &refused);
+    let on = ["edit", "in.obj", "--script", "edits.toml", "-o", "out.obj", "--keep-going"];
+    assert!(bench.run(on).ends(0).err.contains("refused: step 1"));
+    bench.write("edits.toml", refused.split("[[step]]\n    do = 'smooth'").next().unwrap());
+    bench.run(on).ends(1);
+}
+
 #[test]
 fn help_teaches() {
     let bench = Bench::new();
     let help = bench.run(["--help"]);
     assert!(help.ends(0).out.contains("Exit codes:") && help.out.contains("Examples:"));
-    for command in ["clean", "metrics", "compare", "plan", "demo", "config"] {
+    for command in ["clean", "metrics", "compare", "plan", "edit", "demo", "config"] {
         let help = bench.run([command, "--help"]);
         let teaches = help.out.contains("Examples:") || help.out.contains("Files:");
         assert!(help.code == 0 && teaches, "{command}: {}", help.out);

@@ -102,9 +102,9 @@ fn figure_5_and_proposition_3_6_t_junctions_move_by_whole_edges() {
     let start = place(&q, at);
     let ends = [Direction::Up, Direction::Down, Direction::Left, Direction::Right].map(|to| {
         let mut q = q.clone();
-        let moved = t_junction::shift(&mut q, at, to).unwrap();
-        assert_eq!(moved.delta, 0, "{to:?}");
-        let d = moved.dipole.unwrap();
+        let total = q.total_irregularity();
+        let d = t_junction::shift(&mut q, at, to, 1).unwrap().dipole;
+        assert_eq!(q.total_irregularity(), total, "{to:?}");
         assert_eq!(d.is_t_junction(), at.is_t_junction(), "{to:?}");
         q.check().unwrap();
         place(&q, d) - start

@@ -11,7 +11,7 @@ const RANKS: &[(usize, &[&str])] = &[
     (3, &["ops"]),
     (4, &["moves", "patch", "smooth", "metrics"]),
     (5, &["planner"]),
-    (6, &["config", "pipeline"]),
+    (6, &["config", "pipeline", "script"]),
     (7, &["tune", "batch", "report"]),
     (8, &["cli", "viewer", "main"]),
 ];

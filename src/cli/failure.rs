@@ -7,6 +7,7 @@ use quadmend::config::ConfigError;
 use quadmend::io::{ReadError, WriteError};
 use quadmend::metrics::MetricsError;
 use quadmend::pipeline::CleanError;
+use quadmend::script::ScriptError;
 
 use super::Exit;
 use super::output;
@@ -55,6 +56,17 @@ impl From<ReadError> for Failure {
 impl From<CleanError> for Failure {
     fn from(error: CleanError) -> Self {
         Self { exit: Exit::BadInput, error: error.into() }
+    }
+}
+
+impl From<ScriptError> for Failure {
+    fn from(error: ScriptError) -> Self {
+        let wrong_text = matches!(
+            error,
+            ScriptError::Syntax { .. } | ScriptError::Empty { .. } | ScriptError::Step { .. }
+        );
+        let exit = if wrong_text { Exit::Usage } else { Exit::BadInput };
+        Self { exit, error: error.into() }
     }
 }
 

@@ -9,6 +9,7 @@ mod clean;
 mod compare;
 mod config;
 mod demo;
+mod edit;
 mod failure;
 mod generate;
 mod limits;
@@ -57,6 +58,7 @@ Examples:
   quadmend clean remesh.obj --reference scan.obj -o clean.obj
   quadmend metrics remesh.obj                               what is wrong with it?
   quadmend compare remesh.obj clean.obj --reference scan.obj
+  quadmend edit remesh.obj --script edits.toml -o edited.obj   make chosen edits
   quadmend config explain smooth                            what can be tuned?";
 
 /// Cleans the connectivity of quad-dominant meshes: irregular vertices and faces and T-junctions
@@ -75,6 +77,7 @@ enum Command {
     Metrics(metrics::MetricsCommand),
     Compare(compare::Compare),
     Plan(plan::Plan),
+    Edit(edit::Edit),
     Demo(demo::Demo),
     Config(config::ConfigCommand),
     Generate(generate::Generate),
@@ -92,6 +95,7 @@ fn run(command: &Command) -> Result<Exit, Failure> {
         Command::Metrics(command) => command.run(),
         Command::Compare(command) => command.run(),
         Command::Plan(command) => command.run(),
+        Command::Edit(command) => command.run(),
         Command::Demo(command) => command.run(),
         Command::Config(command) => command.run(),
         Command::Generate(command) => command.run(),

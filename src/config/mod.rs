@@ -17,6 +17,7 @@ mod tests;
 
 pub use describe::{explain, schema};
 pub use error::{ConfigError, IllegalValue, Origin};
+pub(crate) use nearest::nearest;
 
 use crate::knobs::{Knob, Section};
 use layer::Layer;

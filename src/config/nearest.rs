@@ -1,7 +1,7 @@
 //! The most similar of some names, for "did you mean".
 
 /// The candidate with the fewest edits from `word`; the first one of several.
-pub(super) fn nearest<'a>(
+pub(crate) fn nearest<'a>(
     word: &str,
     candidates: impl IntoIterator<Item = &'a str>,
 ) -> Option<&'a str> {

@@ -102,6 +102,15 @@ pub struct Stepped {
     pub dipole: Option<Dipole>,
 }
 
+/// What a step carries where.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Carried {
+    pub(super) op: Op,
+    pub(super) delta: i32,
+    /// Where the edge too few is now, and the one too many.
+    pub(super) ends: [Vertex; 2],
+}
+
 impl Dipole {
     /// Whether a dislocation stands here: an edge too few at the origin, one too many at the
     /// target (either may have more of it), counted in the sectors that the half-edge lies in.
@@ -142,18 +151,33 @@ impl Dipole {
 
     /// Makes one step. The mesh is unchanged if it is refused.
     pub fn step(self, mesh: &mut QuadMesh, step: Step) -> Result<Stepped, Refusal> {
+        let Carried { op, delta, ends } = self.carry(mesh, step)?;
+        Ok(Stepped { op, delta, dipole: Self::between(mesh, ends) })
+    }
+
+    /// The dislocation with these ends, v3 first, if one stands there.
+    pub(super) fn between(mesh: &QuadMesh, [x, y]: [Vertex; 2]) -> Option<Self> {
+        let handle = mesh.is_alive(x).then(|| mesh.find(x, y)).flatten().map(Self);
+        handle.filter(|d| d.stands(mesh))
+    }
+
+    /// Makes the operation of `step`, whether or not a dislocation stands here or there: its
+    /// effect on valences is the same everywhere.
+    pub(super) fn carry(self, mesh: &mut QuadMesh, step: Step) -> Result<Carried, Refusal> {
+        let quad = QuadMesh::quad(self.0);
+        if quad >= mesh.quad_ids() || !mesh.is_quad_alive(quad) {
+            return Err(Refusal::Gone);
+        }
         let op = self.op(mesh, step);
         let legal = op.check(mesh)?;
         let delta = legal.delta();
-        let ahead = self.ahead(mesh, step);
+        let (x, y) = self.ahead(mesh, step);
         Op::apply(mesh, legal);
-        let newest = mesh.vertex_ids() - 1;
-        let (x, y) = match (step, ahead) {
-            (Step::SinkLeft | Step::SinkRight, (_, y)) => (newest, y),
-            (_, ends) => ends,
+        let x = match step {
+            Step::SinkLeft | Step::SinkRight => mesh.vertex_ids() - 1,
+            _ => x,
         };
-        let handle = mesh.is_alive(x).then(|| mesh.find(x, y)).flatten().map(Self);
-        Ok(Stepped { op, delta, dipole: handle.filter(|d| d.stands(mesh)) })
+        Ok(Carried { op, delta, ends: [x, y] })
     }
 
     /// The v3 and v5 after the step, read before it; the v3 of a sinking one is yet to be made.

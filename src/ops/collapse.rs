@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 
 /// Merges the origin of `edge` with the corner across its quad.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Collapse {
     /// A half-edge of the quad, out of one of the corners to merge.
     pub edge: HalfEdge,

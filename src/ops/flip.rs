@@ -31,6 +31,7 @@ pub enum Turn {
 
 /// Turns the edge of `edge` within the hexagon of its two quads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Flip {
     /// Either half-edge of the edge.
     pub edge: HalfEdge,

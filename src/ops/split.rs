@@ -20,6 +20,7 @@ use serde::{Deserialize, Serialize};
 
 /// Splits the common origin of two half-edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Split {
     /// First half-edge that moves to the new vertex; v–b becomes double.
     pub first: HalfEdge,

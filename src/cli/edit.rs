@@ -1,0 +1,182 @@
+//! `quadmend edit`: chosen edits, one after the other, from a script.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use quadmend::io;
+use quadmend::mesh::MendPolicy;
+use quadmend::script::{Edited, OPERATIONS, Script, StepError, StepRecord, edit};
+use quadmend::watch::{Phase, Watch};
+use serde::Serialize;
+
+use super::failure::Failure;
+use super::settings::{Running, Settings};
+use super::{Exit, output, paths};
+
+const EXAMPLES: &str = "\
+Examples:
+  quadmend edit remesh.obj --script edits.toml -o edited.obj
+  quadmend edit remesh.obj --script edits.toml --dry-run
+  quadmend edit remesh.obj --reference scan.obj --script edits.toml -o edited.obj --keep-going
+
+A script is a list of steps:
+  [[step]]
+  do = \"cancel-t-junctions\"                  # the T-junction nearest to a place,
+  at = { nearest = [0.1, 0.2, 0.3] }         # with the one nearest to it
+  [[step]]
+  do = \"move-t-junction\"
+  at = { all = \"t-junctions\", within = { center = [0, 0, 0], radius = 0.5 } }
+  to = \"up\"
+  [[step]]
+  do = \"smooth\"
+
+An address is one of
+  { vertex = 12 }  { face = 7 }                numbers of the file, from 1
+  { nearest = [x, y, z] }                      the nearest of what the step is about
+  { nearest = [x, y, z], kind = \"v5\" }
+  { all = \"t-junctions\" }                      a selection, for steps that take several;
+     within = { center = [x, y, z], radius = r } or { min = […], max = […] }
+  { step = 2, result = 1 }                     what an earlier step left
+Kinds: vertices, faces, elements, irregular, v3, v5, f3, f5, t-junctions, duals, dislocations, six.
+An edge is { vertices = [3, 7] } or { nearest = [x, y, z] }.
+A path is a list of addresses that it leads through: path = [{ face = 7 }, { vertex = 12 }].";
+
+/// Make chosen edits: the operations of the paper, from a script
+#[derive(Debug, Args)]
+#[command(after_help = help())]
+pub(super) struct Edit {
+    /// The mesh to edit, polygons of any degree (OBJ, - for standard input)
+    input: PathBuf,
+
+    /// The list of edits (TOML)
+    #[arg(short, long, value_name = "FILE")]
+    script: PathBuf,
+
+    /// Where the edited mesh goes (OBJ, - for standard output); an older file is replaced when the
+    /// new one is complete, but never an input unless --force is given
+    #[arg(short, long, value_name = "MESH", required_unless_present = "dry_run")]
+    output: Option<PathBuf>,
+
+    /// Surface to stay on when smoothing, in the same position and scale (OBJ, - for standard
+    /// input) [default: the input]
+    #[arg(short, long, value_name = "MESH")]
+    reference: Option<PathBuf>,
+
+    #[command(flatten)]
+    caution: Caution,
+
+    /// Write a log as JSON, with the operations of every step (- for standard output)
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+
+    /// Refuse a mesh that has anything to mend, instead of mending it [default: mend]
+    #[arg(long)]
+    strict: bool,
+
+    /// Allow an output to replace an input
+    #[arg(long)]
+    force: bool,
+
+    #[command(flatten)]
+    settings: Settings,
+
+    #[command(flatten)]
+    running: Running,
+}
+
+/// What becomes of a script that does not go through.
+#[derive(Debug, Args)]
+struct Caution {
+    /// Make the edits and tell what came of them, but write no mesh
+    #[arg(long)]
+    dry_run: bool,
+
+    /// Pass over what is refused instead of giving up; without it, nothing is written unless every
+    /// step is made
+    #[arg(long)]
+    keep_going: bool,
+}
+
+#[derive(Serialize)]
+struct Log<'a> {
+    steps: &'a [StepRecord],
+    refused: Vec<String>,
+}
+
+impl Edit {
+    pub(super) fn run(&self) -> Result<Exit, Failure> {
+        self.check_paths()?;
+        let config = self.settings.load()?;
+        let script = self.read_script()?;
+        let progress = self.running.start()?;
+        progress.progress(Phase::Read, 0, 1, None);
+        let mesh = progress.read(&self.input)?;
+        let reference = self.reference.as_deref().map(|path| progress.read(path)).transpose()?;
+        let policy = if self.strict { MendPolicy::Strict } else { MendPolicy::Mend };
+        let options = (&config, self.caution.keep_going);
+        let edited = edit(mesh, reference.as_ref(), policy, &script, options, &progress)?;
+        if let Some(path) = self.output.as_ref().filter(|_| !self.caution.dry_run) {
+            progress.progress(Phase::Write, 0, 1, None);
+            io::write(path, &edited.mesh)?;
+        }
+        progress.finish();
+        self.tell(&edited)?;
+        Ok(if edited.steps.is_empty() { Exit::NothingToImprove } else { Exit::Done })
+    }
+
+    fn read_script(&self) -> Result<Script, Failure> {
+        let shown = self.script.display().to_string();
+        let text = std::fs::read_to_string(&self.script)
+            .map_err(|error| Failure::usage(format!("{shown}: cannot be read: {error}")))?;
+        Ok(Script::parse(&text, &shown)?)
+    }
+
+    /// Everything that can be found wrong before the work is found before the work.
+    fn check_paths(&self) -> Result<(), Failure> {
+        let path = PathBuf::as_path;
+        let meshes: Vec<&Path> =
+            [Some(&self.input), self.reference.as_ref()].into_iter().flatten().map(path).collect();
+        paths::read_stdin_once(&meshes)?;
+        let config = self.settings.config.as_deref();
+        let inputs: Vec<&Path> =
+            meshes.into_iter().chain(config).chain([self.script.as_path()]).collect();
+        let outputs: Vec<&Path> =
+            [&self.output, &self.json].into_iter().flatten().map(path).collect();
+        paths::keep_apart(&inputs, &outputs, self.force)?;
+        self.output.as_deref().map_or(Ok(()), io::check_output)?;
+        Ok(self.json.as_deref().map_or(Ok(()), io::check_place)?)
+    }
+
+    fn tell(&self, edited: &Edited) -> Result<(), Failure> {
+        if !self.running.quiet {
+            output::note(log(edited).trim_end());
+        }
+        let Some(path) = &self.json else { return Ok(()) };
+        let refused = edited.refused.iter().map(StepError::to_string).collect();
+        let log = Log { steps: &edited.steps, refused };
+        output::file(path, &output::json(&log)?)
+    }
+}
+
+/// The steps one by one, then what was refused.
+fn log(edited: &Edited) -> String {
+    let mut text = String::new();
+    for StepRecord { step, operation, done, before, after, ops } in &edited.steps {
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "step {step}: {operation}: {done} (E {before} → {after}, {} operations)",
+            ops.len()
+        );
+    }
+    for error in &edited.refused {
+        let _ = writeln!(text, "refused: {error}");
+    }
+    text
+}
+
+fn help() -> String {
+    let lines = OPERATIONS.iter().map(|kind| format!("  {:<20} {}\n", kind.name, kind.about));
+    format!("{EXAMPLES}\n\nOperations and their keys:\n{}", lines.collect::<String>())
+}
