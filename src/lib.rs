@@ -16,9 +16,11 @@ pub mod ops;
 pub mod patch;
 pub mod pipeline;
 pub mod planner;
+pub mod pure_quad;
 pub mod smooth;
 pub mod sqrtcc;
 pub mod surface;
+pub mod views;
 pub mod watch;
 
 // The example of the README must compile and run.

@@ -139,7 +139,7 @@ fn edit(
     let reference = Reference::new(surface)?;
     let topology = Topology::new(mesh);
     let budget = budget(mesh, &reference, (&config.gate, mean_edge(mesh, &topology)))?;
-    let features = mesh_features(mesh, &topology, &reference, &config.features);
+    let (mut q, features) = lifted(mesh, &topology, &reference, config)?;
     let automation = Automation {
         reference: &reference,
         orientation: smooth::orientation(mesh, &reference),
@@ -151,17 +151,29 @@ fn edit(
         relax: &config.relax,
         smooth: &config.smooth,
     };
+    let schedule = automation.run(&mut q, watch)?;
+    Ok((q, features, schedule))
+}
+
+/// Lifts `mesh` with the features of the reference frozen and the vertices on its creases held;
+/// also the number of feature edges.
+pub(crate) fn lifted(
+    mesh: &PolyMesh,
+    topology: &Topology,
+    reference: &Reference,
+    config: &Config,
+) -> Result<(QuadMesh, usize), LiftError> {
+    let features = mesh_features(mesh, topology, reference, &config.features);
     let mut q = lift(mesh, &features)?;
-    for v in vertices_on_lines(mesh, &topology, &reference, &config.features) {
+    for v in vertices_on_lines(mesh, topology, reference, &config.features) {
         q.pin(v);
     }
-    let schedule = automation.run(&mut q, watch)?;
-    Ok((q, features.count_ones(..) / 2, schedule))
+    Ok((q, features.count_ones(..) / 2))
 }
 
 /// The distance to the reference that cleaning must keep: that of the mesh as it is, or, where
 /// that is none because the mesh is its own reference, a part of its mean edge.
-fn budget(
+pub(crate) fn budget(
     mesh: &PolyMesh,
     reference: &Reference,
     (gate, edge): (&GateOptions, f64),

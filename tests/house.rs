@@ -9,9 +9,9 @@ const RANKS: &[(usize, &[&str])] = &[
     (1, &["mesh"]),
     (2, &["sqrtcc", "surface", "io"]),
     (3, &["ops"]),
-    (4, &["moves", "patch", "smooth", "metrics"]),
+    (4, &["moves", "patch", "smooth", "metrics", "views"]),
     (5, &["planner"]),
-    (6, &["config", "pipeline"]),
+    (6, &["config", "pipeline", "pure_quad"]),
     (7, &["tune", "batch", "report"]),
     (8, &["cli", "viewer", "main"]),
 ];

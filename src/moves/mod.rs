@@ -2,6 +2,7 @@
 
 pub mod burgers;
 pub mod dipole;
+pub mod pure;
 pub mod t_junction;
 
 pub use burgers::Displacement;

@@ -11,6 +11,7 @@
 //! the number of threads.
 
 mod anchors;
+mod around;
 mod fit;
 mod global;
 mod guard;
@@ -20,6 +21,7 @@ mod untangle;
 
 use crate::knobs::knobs;
 
+pub use around::Surroundings;
 pub use global::{SmoothReport, held_vertices, smooth};
 pub use guard::Budget;
 pub use region::{Orientation, Region, RelaxReport, orientation, relax_local};
