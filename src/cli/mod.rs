@@ -8,6 +8,7 @@
 mod clean;
 mod compare;
 mod config;
+mod convert;
 mod demo;
 mod failure;
 mod generate;
@@ -38,7 +39,8 @@ enum Exit {
     Usage = 2,
     /// A mesh is missing, damaged or refused.
     BadInput = 3,
-    /// A limit of `--fail-if` was missed; the output was written all the same.
+    /// A limit of `--fail-if` was missed, or not every face could be made a quad; the output was
+    /// written all the same.
     LimitMissed = 4,
 }
 
@@ -48,7 +50,8 @@ Exit codes:
   1  nothing to improve (the output is written all the same)
   2  usage or configuration
   3  bad input; nothing is written
-  4  a limit given with --fail-if was missed (the output is written all the same)
+  4  a limit given with --fail-if was missed, or not every face could be made a quad (the output
+     is written all the same)
 130  interrupted";
 
 const EXAMPLES: &str = "\
@@ -75,6 +78,7 @@ enum Command {
     Metrics(metrics::MetricsCommand),
     Compare(compare::Compare),
     Plan(plan::Plan),
+    Convert(convert::Convert),
     Demo(demo::Demo),
     Config(config::ConfigCommand),
     Generate(generate::Generate),
@@ -92,6 +96,7 @@ fn run(command: &Command) -> Result<Exit, Failure> {
         Command::Metrics(command) => command.run(),
         Command::Compare(command) => command.run(),
         Command::Plan(command) => command.run(),
+        Command::Convert(command) => command.run(),
         Command::Demo(command) => command.run(),
         Command::Config(command) => command.run(),
         Command::Generate(command) => command.run(),
