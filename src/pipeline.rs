@@ -1,5 +1,8 @@
 //! The whole way: mend → lift → plan and edit → lower → measure.
 
+pub mod optimize;
+pub mod pure_quad;
+
 use crate::config::Config;
 use crate::mesh::{
     Flaw, MendError, MendPolicy, MendReport, MeshError, PolyMesh, Topology, check, mend,
@@ -157,7 +160,7 @@ fn edit(
 
 /// Lifts `mesh` with the features of the reference frozen and the vertices on its creases held;
 /// also the number of feature edges.
-pub(crate) fn lifted(
+fn lifted(
     mesh: &PolyMesh,
     topology: &Topology,
     reference: &Reference,
@@ -173,7 +176,7 @@ pub(crate) fn lifted(
 
 /// The distance to the reference that cleaning must keep: that of the mesh as it is, or, where
 /// that is none because the mesh is its own reference, a part of its mean edge.
-pub(crate) fn budget(
+fn budget(
     mesh: &PolyMesh,
     reference: &Reference,
     (gate, edge): (&GateOptions, f64),

@@ -10,8 +10,8 @@ const RANKS: &[(usize, &[&str])] = &[
     (2, &["sqrtcc", "surface", "io"]),
     (3, &["ops"]),
     (4, &["moves", "patch", "smooth", "metrics", "views"]),
-    (5, &["planner"]),
-    (6, &["config", "pipeline", "pure_quad"]),
+    (5, &["planner", "optimize"]),
+    (6, &["config", "pipeline"]),
     (7, &["tune", "batch", "report"]),
     (8, &["cli", "viewer", "main"]),
 ];

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use quadmend::io;
 use quadmend::mesh::{MendPolicy, MeshError, PolyMesh, mend};
 use quadmend::metrics::table;
-use quadmend::pure_quad::{Report, pure_quad};
+use quadmend::pipeline::pure_quad::{Report, pure_quad};
 use quadmend::views::{Label, View, catmull_clark, dual, primal, sqrt_cc};
 use quadmend::watch::{Phase, Watch};
 
@@ -111,19 +111,10 @@ impl Convert {
         if self.to != Kind::PureQuad && (self.reference.is_some() || self.json.is_some()) {
             return Err(Failure::usage("--reference and --json are for `--to pure-quad` only"));
         }
-        let meshes: Vec<&Path> = [Some(&self.input), self.reference.as_ref()]
-            .into_iter()
-            .flatten()
-            .map(|p| &**p)
-            .collect();
-        paths::read_stdin_once(&meshes)?;
-        let outputs: Vec<&Path> =
-            std::iter::once(&*self.output).chain(self.json.as_deref()).collect();
-        let inputs: Vec<&Path> =
-            meshes.into_iter().chain(self.settings.config.as_deref()).collect();
-        paths::keep_apart(&inputs, &outputs, self.force)?;
-        io::check_output(&self.output)?;
-        Ok(self.json.as_deref().map_or(Ok(()), io::check_place)?)
+        let meshes: Vec<&Path> =
+            std::iter::once(&*self.input).chain(self.reference.as_deref()).collect();
+        let outputs = (&*self.output, self.json.as_deref());
+        paths::check(&meshes, self.settings.config.as_deref(), outputs, self.force)
     }
 
     fn policy(&self) -> MendPolicy {
@@ -168,11 +159,7 @@ impl Convert {
         ));
         let table = table(&[("before", &report.before), ("after", &report.after)]);
         let taken = is_stream(&self.output) || self.json.as_deref().is_some_and(is_stream);
-        if !taken {
-            return output::data(&table);
-        }
-        output::note(table.trim_end());
-        Ok(())
+        output::table(&table, taken)
     }
 
     fn view(&self, mesh: PolyMesh, kind: Kind, progress: &Progress) -> Result<Exit, Failure> {

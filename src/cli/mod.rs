@@ -15,6 +15,7 @@ mod generate;
 mod limits;
 mod measuring;
 mod metrics;
+mod optimize;
 mod output;
 mod paths;
 mod plan;
@@ -79,6 +80,7 @@ enum Command {
     Compare(compare::Compare),
     Plan(plan::Plan),
     Convert(convert::Convert),
+    Optimize(optimize::Optimize),
     Demo(demo::Demo),
     Config(config::ConfigCommand),
     Generate(generate::Generate),
@@ -97,6 +99,7 @@ fn run(command: &Command) -> Result<Exit, Failure> {
         Command::Compare(command) => command.run(),
         Command::Plan(command) => command.run(),
         Command::Convert(command) => command.run(),
+        Command::Optimize(command) => command.run(),
         Command::Demo(command) => command.run(),
         Command::Config(command) => command.run(),
         Command::Generate(command) => command.run(),

@@ -3,6 +3,7 @@
 pub mod burgers;
 pub mod dipole;
 pub mod pure;
+pub mod regularize;
 pub mod t_junction;
 
 pub use burgers::Displacement;

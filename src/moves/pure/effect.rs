@@ -25,7 +25,8 @@ pub enum Kind {
 impl Kind {
     /// Whether `v` is an element of this kind that a conversion may change.
     pub(super) fn covers(self, mesh: &QuadMesh, v: Vertex) -> bool {
-        mesh.is_face(v) == (self == Self::Faces) && !mesh.is_ghost(v) && !mesh.is_held(v)
+        let is_free = !mesh.is_held(v) || mesh.is_pin(v);
+        mesh.is_face(v) == (self == Self::Faces) && !mesh.is_ghost(v) && is_free
     }
 
     /// The irregular elements of this kind, in order of id.

@@ -4,11 +4,11 @@
 //! are relaxed on the reference, and at the end all of them together within the budget of
 //! distance. What is far from any change stays as it is, to the bit.
 
+use super::{CleanError, budget, lifted};
 use crate::config::Config;
 use crate::mesh::{MendPolicy, MendReport, MeshError, PolyMesh, Topology, check, mend};
 use crate::metrics::{Metrics, Target, measure};
 use crate::moves::pure::{self, Conversion, Kind};
-use crate::pipeline::{CleanError, budget, lifted};
 use crate::smooth::{Budget, Surroundings, orientation, smooth};
 use crate::sqrtcc::{QuadMesh, Vertex, lower};
 use crate::surface::{Reference, deviation, mean_edge};
