@@ -39,7 +39,7 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     }
     left.push(q.total_irregularity());
 
-    let conversion = convert(&mut q, Kind::Faces, &mut |_, _| true, &Silent);
+    let conversion = convert(&mut q, Kind::Faces, &mut |_, _| 0.0, &Silent);
     assert_eq!(conversion.left.len(), conversion.obstructions.len());
     assert!(left.is_sorted_by(|a, b| a >= b) && left[2] < left[0] / 2, "{left:?}");
     check(&lower(&q, mesh.group_names())?.mesh)?;

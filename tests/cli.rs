@@ -414,6 +414,9 @@ fn convert_refuses_what_cannot_be() {
     bench
         .run(["convert", "in.obj", "--to", "dual", "-o", "o.obj", "--json", "r.json"])
         .fails(2, &["--to pure-quad"]);
+    bench
+        .run(["convert", "in.obj", "--to", "dual", "-o", "o.obj", "--first", "d"])
+        .fails(2, &["--to primal"]);
     bench.write("tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     bench
         .run(["convert", "tri.obj", "--to", "primal", "-o", "o.obj"])

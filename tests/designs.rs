@@ -94,7 +94,7 @@ fn figure_9_three_designs_of_one_surface() {
     let (first, reference) = (roof(3), roof(5));
     let mut q = lifted(&first);
     assert_eq!(irregular(&q), (vec![5; 4], vec![]), "four v5");
-    convert(&mut q, Kind::Vertices, &mut |_, _| true, &Silent);
+    convert(&mut q, Kind::Vertices, &mut |_, _| 0.0, &Silent);
     assert_eq!(irregular(&q), (vec![], vec![5; 4]), "four pentagons");
     let second = lower_one(&q);
     let pentagons: Vec<Vertex> = Kind::Faces.irregular(&q).collect();
@@ -233,7 +233,7 @@ fn relocate(q: &mut QuadMesh, mut at: Dipole, reference: &Reference) -> usize {
         let better = STEPS.into_iter().find_map(|step| {
             let mark = q.mark();
             let next = at.step(q, step).ok().filter(|s| s.delta == 0).and_then(|s| s.dipole);
-            let next = next.filter(|n| bend(q, q.origin(n.0), reference) > 1.2 * here);
+            let next = next.filter(|n| bend(q, q.origin(n.0), reference) > 1.02 * here);
             if next.is_none() {
                 q.undo_to(mark);
             }

@@ -14,7 +14,7 @@ use quadmend::sqrtcc::{QuadMesh, lift, lower};
 use quadmend::watch::Silent;
 
 fn convert_all(q: &mut QuadMesh, kind: Kind) -> Conversion {
-    convert(q, kind, &mut |_, _| true, &Silent)
+    convert(q, kind, &mut |_, _| 0.0, &Silent)
 }
 
 /// The sample meshes after so many random operations.

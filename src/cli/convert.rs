@@ -50,9 +50,9 @@ pub(super) struct Convert {
     #[arg(short, long, value_name = "MESH")]
     reference: Option<PathBuf>,
 
-    /// For primal: what the first vertex of each component stands for
-    #[arg(long, value_name = "LABEL", default_value = "p")]
-    first: First,
+    /// For primal: what the first vertex of each component stands for [default: p]
+    #[arg(long, value_name = "LABEL")]
+    first: Option<First>,
 
     /// For pure-quad: write the report as JSON (- for standard output) [default: none]
     #[arg(long, value_name = "FILE")]
@@ -111,6 +111,9 @@ impl Convert {
         if self.to != Kind::PureQuad && (self.reference.is_some() || self.json.is_some()) {
             return Err(Failure::usage("--reference and --json are for `--to pure-quad` only"));
         }
+        if self.to != Kind::Primal && self.first.is_some() {
+            return Err(Failure::usage("--first is for `--to primal` only"));
+        }
         let meshes: Vec<&Path> =
             std::iter::once(&*self.input).chain(self.reference.as_deref()).collect();
         let outputs = (&*self.output, self.json.as_deref());
@@ -164,7 +167,7 @@ impl Convert {
 
     fn view(&self, mesh: PolyMesh, kind: Kind, progress: &Progress) -> Result<Exit, Failure> {
         if kind == Kind::Primal {
-            let first = if self.first == First::P { Label::Vertex } else { Label::Face };
+            let first = if self.first == Some(First::D) { Label::Face } else { Label::Vertex };
             io::write(&self.output, &primal(&mesh, first).map_err(|e| self.failure(e))?)?;
             return Ok(Exit::Done);
         }

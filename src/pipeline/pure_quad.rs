@@ -65,26 +65,37 @@ pub fn pure_quad(
     watch.progress(Phase::Measure, 0, 2, None);
     let target = Target::new(surface, &config.measure)?;
     let before = measure(&raw, Some(&target))?;
-    let reference = Reference::new(surface)?;
-    let topology = Topology::new(&mesh);
-    let allowed = budget(&mesh, &reference, (&config.gate, mean_edge(&mesh, &topology)))?;
-    let (mut q, feature_edges) = lifted(&mesh, &topology, &reference, config)?;
-    let side = orientation(&mesh, &reference);
-    let mut touched = Vec::new();
-    let mut settle = |q: &mut QuadMesh, changed: &[Vertex]| {
-        let around = Surroundings::gather(q, changed, RINGS);
-        touched.extend_from_slice(changed);
-        around.relax(q, (&reference, side), &config.relax, SWEEPS) >= POOR
-    };
-    let conversion = pure::convert(&mut q, Kind::Faces, &mut settle, watch);
-    smooth_around(&mut q, &touched, (&reference, allowed), config, watch)?;
-    q.commit();
+    let (q, feature_edges, conversion) = edit(&mesh, surface, config, watch)?;
     let result = lower(&q, mesh.group_names())?.mesh;
     check(&result).map_err(CleanError::Flawed)?;
     watch.progress(Phase::Measure, 1, 2, None);
     let after = measure(&result, Some(&target))?;
     let report = Report { mends, feature_edges, before, after, conversion };
     Ok(Converted { mesh: result, report })
+}
+
+/// Lifts, converts and smooths; also the number of feature edges.
+fn edit(
+    mesh: &PolyMesh,
+    surface: &PolyMesh,
+    config: &Config,
+    watch: &dyn Watch,
+) -> Result<(QuadMesh, usize, Conversion), CleanError> {
+    let reference = Reference::new(surface)?;
+    let topology = Topology::new(mesh);
+    let allowed = budget(mesh, &reference, (&config.gate, mean_edge(mesh, &topology)))?;
+    let (mut q, feature_edges) = lifted(mesh, &topology, &reference, config)?;
+    let side = orientation(mesh, &reference);
+    let mut touched = Vec::new();
+    let mut settle = |q: &mut QuadMesh, changed: &[Vertex]| {
+        let around = Surroundings::gather(q, changed, RINGS);
+        touched.extend_from_slice(changed);
+        around.relax(q, (&reference, side), &config.relax, SWEEPS) - POOR
+    };
+    let conversion = pure::convert(&mut q, Kind::Faces, &mut settle, watch);
+    smooth_around(&mut q, &touched, (&reference, allowed), config, watch)?;
+    q.commit();
+    Ok((q, feature_edges, conversion))
 }
 
 /// Smooths what is near the `touched` vertices, within the budget of distance.

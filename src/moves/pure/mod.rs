@@ -33,8 +33,9 @@ const REACHES: [u32; 6] = [2, 4, 8, 16, 32, 64];
 const DELTAS: [i32; 5] = [-4, -2, 0, 2, 4];
 /// Pairs that lower E are looked for only this near: that is not what a conversion is for.
 const NEAR: u32 = 12;
-/// Paths of one element that are tried in a round.
+/// Paths of one element that are tried in a round, and in the last ones.
 const TRIES: usize = 6;
+const LAST_TRIES: usize = 40;
 
 /// What a conversion did.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -53,9 +54,10 @@ pub struct Conversion {
     pub obstructions: Vec<Obstruction>,
 }
 
-/// Moves vertices after a change to where they look well, and says whether they do. It gets the
-/// mesh and the vertices that were changed, and must not change the connectivity.
-pub type Settle<'a> = dyn FnMut(&mut QuadMesh, &[Vertex]) -> bool + 'a;
+/// Moves vertices after a change to where they look well, and says how well they do: from 0 on it
+/// is well enough. It gets the mesh and the vertices that were changed, and must not change the
+/// connectivity.
+pub type Settle<'a> = dyn FnMut(&mut QuadMesh, &[Vertex]) -> f64 + 'a;
 
 /// Converts all irregular elements of `kind` that parity allows.
 ///
@@ -92,7 +94,8 @@ pub fn convert(
     Conversion { ops, divided, pairs, delta, left, obstructions }
 }
 
-/// Makes `seed` and another element regular; the operations, if a way was found.
+/// Makes `seed` and another element regular; the operations, if a way was found that looks well,
+/// or, in the last rounds, the one that looks best.
 fn pair_up(
     mesh: &mut QuadMesh,
     (seed, kind): (Vertex, Kind),
@@ -100,16 +103,33 @@ fn pair_up(
     settle: &mut Settle,
 ) -> Option<Vec<Op>> {
     let mut search = Search::new(mesh, seed, kind, limits)?;
-    for _ in 0..TRIES {
-        let path = search.next(mesh)?;
-        let mark = mesh.mark();
-        let made = path.iter().try_for_each(|op| op.run(mesh).map(drop)).is_ok();
-        if made && (settle(mesh, &mesh.touched_since(mark)) || limits.most == i32::MAX) {
+    let mut best: Option<(f64, Vec<Op>)> = None;
+    let tries = if limits.most == i32::MAX { LAST_TRIES } else { TRIES };
+    let mark = mesh.mark();
+    for _ in 0..tries {
+        let Some(path) = search.next(mesh) else { break };
+        let looks = run(mesh, &path, settle);
+        if looks.is_some_and(|looks| looks >= 0.0) {
             return Some(path);
         }
         mesh.undo_to(mark);
+        best = match looks {
+            Some(looks) if best.as_ref().is_none_or(|b| looks > b.0) => Some((looks, path)),
+            _ => best,
+        };
     }
-    None
+    let (_, path) = best.filter(|_| limits.most == i32::MAX)?;
+    run(mesh, &path, settle).map(|_| path)
+}
+
+/// Makes a change, whole or not at all; how well it looks.
+fn run(mesh: &mut QuadMesh, path: &[Op], settle: &mut Settle) -> Option<f64> {
+    let mark = mesh.mark();
+    if path.iter().try_for_each(|op| op.run(mesh).map(drop)).is_err() {
+        mesh.undo_to(mark);
+        return None;
+    }
+    Some(settle(mesh, &mesh.touched_since(mark)))
 }
 
 /// What is tried, one round after the other; in the last ones anything goes.
@@ -127,11 +147,9 @@ fn divide_large(mesh: &mut QuadMesh, kind: Kind, ops: &mut Vec<Op>, settle: &mut
             let best =
                 cuts(mesh, v).filter_map(|op| Some((op.check(mesh).ok()?.delta(), op))).min();
             let Some((_, op)) = best else { break };
-            let mark = mesh.mark();
-            if op.run(mesh).is_err() {
+            if run(mesh, &[op], settle).is_none() {
                 break;
             }
-            settle(mesh, &mesh.touched_since(mark));
             ops.push(op);
         }
     }
