@@ -87,7 +87,6 @@ impl Search {
 
     fn push(&mut self, node: Node) {
         let left = if node.carrier.is_some() { self.ahead[node.place.0 as usize] } else { 0 };
-        // In a step the carrier can pass an element by.
         let reachable = left != NONE && node.steps + left / 2 <= self.limits.reach;
         let worth = node.carrier.is_some() || node.delta <= self.limits.most;
         if reachable && worth && !self.closed.contains(&node.place) {
@@ -135,23 +134,26 @@ impl Search {
 }
 
 /// Elements between each one and the nearest irregular one but `start`, without crossing frozen
-/// edges; `None` if that is too far from `start`. O(n).
+/// edges; `None` if that is too far from `start`. O(n), nearly all of it for clearing memory.
 fn distances(mesh: &QuadMesh, start: Vertex, kind: Kind, reach: u32) -> Option<Vec<u32>> {
-    let near = flood(mesh, vec![start], kind, 2 * reach);
+    // In a step the carrier can pass an element by.
+    let far = 2 * reach;
+    let (_, near) = flood(mesh, vec![start], kind, far);
     let targets: Vec<Vertex> =
-        kind.irregular(mesh).filter(|&v| v != start && near[v as usize] != NONE).collect();
-    if targets.is_empty() { None } else { Some(flood(mesh, targets, kind, u32::MAX)) }
+        near.into_iter().filter(|&v| v != start && mesh.valence(v) != 4).collect();
+    (!targets.is_empty()).then(|| flood(mesh, targets, kind, far).0)
 }
 
-fn flood(mesh: &QuadMesh, from: Vec<Vertex>, kind: Kind, most: u32) -> Vec<u32> {
+/// The distance of every element from the nearest of `from`, as far as it is at most `most`, and
+/// those elements, the nearest first.
+fn flood(mesh: &QuadMesh, from: Vec<Vertex>, kind: Kind, most: u32) -> (Vec<u32>, Vec<Vertex>) {
     let mut distance = vec![NONE; mesh.vertex_ids() as usize];
     for &v in &from {
         distance[v as usize] = 0;
     }
-    let mut queue = from;
+    let mut met = from;
     let mut next = 0;
-    while next < queue.len() {
-        let v = queue[next];
+    while let Some(&v) = met.get(next) {
         next += 1;
         let d = distance[v as usize] + 1;
         if d > most {
@@ -161,11 +163,11 @@ fn flood(mesh: &QuadMesh, from: Vec<Vertex>, kind: Kind, most: u32) -> Vec<u32> 
             let w = mesh.origin(QuadMesh::opposite(h));
             if distance[w as usize] == NONE && kind.covers(mesh, w) {
                 distance[w as usize] = d;
-                queue.push(w);
+                met.push(w);
             }
         }
     }
-    distance
+    (distance, met)
 }
 
 /// An operation, its change of E, and the irregular element with its valence that is left.
