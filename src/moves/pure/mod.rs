@@ -2,10 +2,11 @@
 //! irregular vertex becomes irregular faces.
 //!
 //! ```text
-//!   ┌───┬───┐          ┌───┬───┐
-//!   │  / \  │          │   │   │      an f3 and an f5 that share an edge: one edge shift leaves
-//!   │ /   \ │   ──►    │   │   │      a v3 and a v5. Apart from one another, the f3 emits a
-//!   ├─f3──f5┤          ├───┼───┤      dislocation that walks to the f5 and is absorbed.
+//!   a─────b─────c          a─────b─────c     An f3 and an f5 that share an edge: an edge shift
+//!   │ \   f5    │          │     │     │     makes them quads; a loses an edge (v3) and b gains
+//!   │   \       │   ──►    │     │     │     one (v5). Apart from one another, the f3 emits a
+//!   │ f3  \     │          │     │     │     dislocation that walks to the f5 and is absorbed
+//!   d─────e─────f          d─────e─────f     there.
 //! ```
 //! Large even elements are divided. Odd ones can only go in pairs: the number of odd faces of a
 //! part of the mesh between frozen edges has the parity of the number of those edges, whatever is
