@@ -13,6 +13,7 @@ pub mod mesh;
 pub mod metrics;
 pub mod moves;
 pub mod ops;
+pub mod optimize;
 pub mod patch;
 pub mod pipeline;
 pub mod planner;
@@ -20,6 +21,7 @@ pub mod script;
 pub mod smooth;
 pub mod sqrtcc;
 pub mod surface;
+pub mod views;
 pub mod watch;
 
 // The example of the README must compile and run.

@@ -1,5 +1,8 @@
 //! The whole way: mend → lift → plan and edit → lower → measure.
 
+pub mod optimize;
+pub mod pure_quad;
+
 use crate::config::Config;
 use crate::mesh::{
     Flaw, MendError, MendPolicy, MendReport, MeshError, PolyMesh, Topology, check, mend,

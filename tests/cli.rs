@@ -404,3 +404,110 @@ fn help_teaches() {
     bench.run(["claen"]).fails(2, &["clean"]);
     assert_eq!(bench.run([""; 0]).code, 2);
 }
+
+#[test]
+fn convert_makes_pure_quads_and_tells() {
+    let bench = Bench::new();
+    let run = bench.run([
+        "convert",
+        SAMPLE,
+        "--to",
+        "pure-quad",
+        "--reference",
+        REFERENCE,
+        "-o",
+        "quads.obj",
+        "--json",
+        "report.json",
+    ]);
+    let report: serde_json::Value = serde_json::from_str(&bench.read("report.json")).unwrap();
+    let left = report["conversion"]["left"].as_array().unwrap().len();
+    run.ends(if left == 0 { 0 } else { 4 });
+    assert_eq!(run.err.matches("not a quad:").count(), left, "{}", run.err);
+    assert!(run.out.contains("before") && run.err.contains("pairs converted"), "{}", run.err);
+    let odd = |line: &&str| line.starts_with("f ") && line.split(' ').count() != 5;
+    assert_eq!(bench.read("quads.obj").lines().filter(odd).count(), left);
+}
+
+#[test]
+fn convert_tells_what_parity_stops() {
+    let bench = Bench::new();
+    bench.write("odd.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nf 1 2 3 4\nf 2 5 3\n");
+    let run = bench.run(["convert", "odd.obj", "--to", "pure-quad", "-o", "out.obj"]);
+    run.ends(4);
+    assert!(run.err.contains("5 boundary and feature edges; that number is odd"), "{}", run.err);
+    assert!(bench.files().contains(&"out.obj".to_owned()));
+}
+
+#[test]
+fn a_regular_mesh_has_nothing_to_convert() {
+    let bench = Bench::new();
+    bench.write("in.obj", &grid(4));
+    bench.run(["convert", "in.obj", "--to", "pure-quad", "-o", "out.obj"]).ends(1);
+    assert!(bench.files().contains(&"out.obj".to_owned()));
+}
+
+#[test]
+fn convert_to_sqrtcc_and_back_gives_the_same_mesh() {
+    let bench = Bench::new();
+    bench.write("in.obj", &grid(4));
+    for kind in ["dual", "catmull-clark", "sqrtcc"] {
+        bench.run(["convert", "in.obj", "--to", kind, "-o", "view.obj"]).ends(0);
+        let vertex = bench.read("view.obj").lines().next().unwrap().split(' ').count();
+        assert_eq!(vertex, 7, "{kind}: coordinates and a colour");
+    }
+    bench.run(["convert", "view.obj", "--to", "primal", "-o", "again.obj"]).ends(0);
+    let lines = |name: &str, key: &str| {
+        let text = bench.read(name);
+        let rows = text.lines().filter(|l| l.starts_with(key)).map(|l| {
+            let mut words: Vec<String> = l.split(' ').skip(1).map(str::to_owned).collect();
+            if key == "f " {
+                words.sort();
+            }
+            words
+        });
+        rows.collect::<Vec<_>>()
+    };
+    for key in ["v ", "f "] {
+        assert_eq!(lines("again.obj", key), lines("in.obj", key));
+    }
+}
+
+#[test]
+fn convert_refuses_what_cannot_be() {
+    let bench = Bench::new();
+    bench.write("in.obj", &grid(3));
+    bench
+        .run(["convert", "in.obj", "--to", "dual", "-o", "in.obj"])
+        .fails(2, &["in.obj is an input", "--force"]);
+    bench
+        .run(["convert", "in.obj", "--to", "dual", "-o", "o.obj", "--json", "r.json"])
+        .fails(2, &["--to pure-quad"]);
+    bench
+        .run(["convert", "in.obj", "--to", "dual", "-o", "o.obj", "--first", "d"])
+        .fails(2, &["--to primal"]);
+    bench.write("tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    bench
+        .run(["convert", "tri.obj", "--to", "primal", "-o", "o.obj"])
+        .fails(3, &["tri.obj", "face 0 has 3 corners", "quads only"]);
+    assert_eq!(bench.files(), ["in.obj", "tri.obj"]);
+}
+
+#[test]
+fn optimize_tells_mean_and_largest_before_and_after() {
+    let bench = Bench::new();
+    let base = ["optimize", SAMPLE, "--reference", REFERENCE, "-o", "out.obj"];
+    let less = ["--set", "optimize.iterations=40", "--json", "report.json"];
+    for goal in ["planar", "angles"] {
+        let run = bench.run(base.into_iter().chain(["--goal", goal]).chain(less));
+        run.ends(0);
+        assert!(run.out.contains("planarity, mean") && run.out.contains("largest"), "{}", run.out);
+        let report: serde_json::Value = serde_json::from_str(&bench.read("report.json")).unwrap();
+        let key = if goal == "planar" { "planarity" } else { "angle_deviation_deg" };
+        let value = |when| number(&report, [when, key, "mean"]);
+        assert!(value("after") < value("before"), "{goal}: {report}");
+    }
+    bench
+        .run(["optimize", "none.obj", "--goal", "planar", "-o", "o.obj"])
+        .fails(3, &["none.obj", "no such file"]);
+}

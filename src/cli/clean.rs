@@ -90,21 +90,11 @@ impl Clean {
         Ok(limits::check(&self.fail_if, &cleaned.report.after, summary::exit(&cleaned.report)))
     }
 
-    /// Everything that can be found wrong before the work is found before the work.
     fn check_paths(&self) -> Result<(), Failure> {
-        let meshes: Vec<&Path> = [Some(&self.input), self.reference.as_ref()]
-            .into_iter()
-            .flatten()
-            .map(PathBuf::as_path)
-            .collect();
-        paths::read_stdin_once(&meshes)?;
-        let inputs: Vec<&Path> =
-            meshes.into_iter().chain(self.settings.config.as_deref()).collect();
-        let outputs: Vec<&Path> =
-            std::iter::once(self.output.as_path()).chain(self.json.as_deref()).collect();
-        paths::keep_apart(&inputs, &outputs, self.force)?;
-        io::check_output(&self.output)?;
-        Ok(self.json.as_deref().map_or(Ok(()), io::check_place)?)
+        let meshes: Vec<&Path> =
+            std::iter::once(&*self.input).chain(self.reference.as_deref()).collect();
+        let outputs = (&*self.output, self.json.as_deref());
+        paths::check(&meshes, self.settings.config.as_deref(), outputs, self.force)
     }
 
     fn tell(&self, report: &Report) -> Result<(), Failure> {
@@ -114,10 +104,6 @@ impl Clean {
         output::note(summary::work(report).trim_end());
         let table = summary::table(report);
         let taken = is_stream(&self.output) || self.json.as_deref().is_some_and(is_stream);
-        if !taken {
-            return output::data(&table);
-        }
-        output::note(table.trim_end());
-        Ok(())
+        output::table(&table, taken)
     }
 }

@@ -8,6 +8,7 @@
 mod clean;
 mod compare;
 mod config;
+mod convert;
 mod demo;
 mod edit;
 mod failure;
@@ -15,6 +16,7 @@ mod generate;
 mod limits;
 mod measuring;
 mod metrics;
+mod optimize;
 mod output;
 mod paths;
 mod plan;
@@ -39,7 +41,8 @@ enum Exit {
     Usage = 2,
     /// A mesh is missing, damaged or refused.
     BadInput = 3,
-    /// A limit of `--fail-if` was missed; the output was written all the same.
+    /// A limit of `--fail-if` was missed, or not every face could be made a quad; the output was
+    /// written all the same.
     LimitMissed = 4,
 }
 
@@ -49,7 +52,8 @@ Exit codes:
   1  nothing to improve (the output is written all the same)
   2  usage or configuration
   3  bad input; nothing is written
-  4  a limit given with --fail-if was missed (the output is written all the same)
+  4  a limit given with --fail-if was missed, or not every face could be made a quad (the output
+     is written all the same)
 130  interrupted";
 
 const EXAMPLES: &str = "\
@@ -78,6 +82,8 @@ enum Command {
     Compare(compare::Compare),
     Plan(plan::Plan),
     Edit(edit::Edit),
+    Convert(convert::Convert),
+    Optimize(optimize::Optimize),
     Demo(demo::Demo),
     Config(config::ConfigCommand),
     Generate(generate::Generate),
@@ -96,6 +102,8 @@ fn run(command: &Command) -> Result<Exit, Failure> {
         Command::Compare(command) => command.run(),
         Command::Plan(command) => command.run(),
         Command::Edit(command) => command.run(),
+        Command::Convert(command) => command.run(),
+        Command::Optimize(command) => command.run(),
         Command::Demo(command) => command.run(),
         Command::Config(command) => command.run(),
         Command::Generate(command) => command.run(),

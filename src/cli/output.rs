@@ -40,3 +40,12 @@ pub(super) fn file(path: &Path, text: &str) -> Result<(), Failure> {
     }
     Ok(write_atomically(path, |out| out.write_all(text.as_bytes()))?)
 }
+
+/// Shows a table: on standard output, unless that has taken other data.
+pub(super) fn table(text: &str, taken: bool) -> Result<(), Failure> {
+    if !taken {
+        return data(text);
+    }
+    note(text.trim_end());
+    Ok(())
+}

@@ -2,11 +2,29 @@
 
 use std::path::Path;
 
+use quadmend::io;
+
 use super::failure::Failure;
 
 /// Whether the path means standard input or output.
 pub(super) fn is_stream(path: &Path) -> bool {
     path.as_os_str() == "-"
+}
+
+/// Finds what is wrong with the paths of a command that makes a mesh and perhaps a report, before
+/// the work is done.
+pub(super) fn check(
+    meshes: &[&Path],
+    config: Option<&Path>,
+    (output, json): (&Path, Option<&Path>),
+    force: bool,
+) -> Result<(), Failure> {
+    read_stdin_once(meshes)?;
+    let inputs: Vec<&Path> = meshes.iter().copied().chain(config).collect();
+    let outputs: Vec<&Path> = std::iter::once(output).chain(json).collect();
+    keep_apart(&inputs, &outputs, force)?;
+    io::check_output(output)?;
+    Ok(json.map_or(Ok(()), io::check_place)?)
 }
 
 /// Refuses to read standard input for two meshes.

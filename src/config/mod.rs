@@ -72,6 +72,7 @@ sections! {
     gate: crate::planner::gate::GateOptions,
     relax: crate::smooth::RelaxOptions,
     smooth: crate::smooth::SmoothOptions,
+    optimize: crate::optimize::OptimizeOptions,
     measure: crate::metrics::MeasureOptions,
 }
 

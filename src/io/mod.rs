@@ -36,6 +36,18 @@ pub trait Format: Sync {
 
     /// Writes a mesh so that reading it gives the same mesh again. Linear in its size.
     fn write(&self, mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()>;
+
+    /// Writes a mesh with a colour (red, green, blue, 0 to 1) for each vertex. Formats that have
+    /// none leave them out.
+    fn write_coloured(
+        &self,
+        mesh: &PolyMesh,
+        colours: &[[f64; 3]],
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
+        let _ = colours;
+        self.write(mesh, out)
+    }
 }
 
 /// A mesh as it was read, and what was left out.
@@ -227,6 +239,20 @@ pub fn read(path: &Path) -> Result<Loaded, ReadError> {
 pub fn write(path: &Path, mesh: &PolyMesh) -> Result<(), WriteError> {
     let format = writer_for(path)?;
     write_atomically(path, |out| format.write(mesh, out))
+}
+
+/// Writes `mesh` with a colour for each vertex to `path`, whole or not at all.
+///
+/// # Panics
+/// If there is not one colour for each vertex: that is a bug of the caller.
+pub fn write_coloured(
+    path: &Path,
+    mesh: &PolyMesh,
+    colours: &[[f64; 3]],
+) -> Result<(), WriteError> {
+    assert_eq!(colours.len(), mesh.vertex_count(), "one colour for each vertex");
+    let format = writer_for(path)?;
+    write_atomically(path, |out| format.write_coloured(mesh, colours, out))
 }
 
 /// Whether [`write`] could write to `path` as far as its name tells, so that a long computation

@@ -52,22 +52,47 @@ impl Format for Obj {
 
     fn write(&self, mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
         for point in mesh.points() {
-            out.write_all(b"v")?;
-            point.iter().try_for_each(|&x| write_number(out, x))?;
-            out.write_all(b"\n")?;
+            write_vertex(out, point.iter())?;
         }
-        let mut group = None;
-        let grouped = mesh.groups().iter().any(|&g| !mesh.group_names()[g as usize].is_empty());
-        for (face, &g) in mesh.faces().zip(mesh.groups()) {
-            if grouped && group.replace(g) != Some(g) {
-                writeln!(out, "{}", group_line(&mesh.group_names()[g as usize]))?;
-            }
-            out.write_all(b"f")?;
-            face.iter().try_for_each(|&v| write!(out, " {}", v + 1))?;
-            out.write_all(b"\n")?;
-        }
-        Ok(())
+        write_faces(mesh, out)
     }
+
+    /// As three more numbers on each `v` line, which Blender, `MeshLab` and others understand.
+    fn write_coloured(
+        &self,
+        mesh: &PolyMesh,
+        colours: &[[f64; 3]],
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
+        for (point, colour) in mesh.points().iter().zip(colours) {
+            write_vertex(out, point.iter().chain(colour))?;
+        }
+        write_faces(mesh, out)
+    }
+}
+
+fn write_vertex<'a>(
+    out: &mut dyn Write,
+    mut numbers: impl Iterator<Item = &'a f64>,
+) -> io::Result<()> {
+    out.write_all(b"v")?;
+    numbers.try_for_each(|&x| write_number(out, x))?;
+    out.write_all(b"\n")
+}
+
+/// The faces, with a line where another group begins.
+fn write_faces(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
+    let mut group = None;
+    let grouped = mesh.groups().iter().any(|&g| !mesh.group_names()[g as usize].is_empty());
+    for (face, &g) in mesh.faces().zip(mesh.groups()) {
+        if grouped && group.replace(g) != Some(g) {
+            writeln!(out, "{}", group_line(&mesh.group_names()[g as usize]))?;
+        }
+        out.write_all(b"f")?;
+        face.iter().try_for_each(|&v| write!(out, " {}", v + 1))?;
+        out.write_all(b"\n")?;
+    }
+    Ok(())
 }
 
 type Located = (Option<usize>, ReadFault);

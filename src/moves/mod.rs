@@ -21,7 +21,9 @@ pub mod element;
 pub mod merge;
 pub mod pair;
 pub mod path;
+pub mod pure;
 mod refusal;
+pub mod regularize;
 pub mod t_junction;
 mod walk;
 

@@ -10,10 +10,12 @@
 //!
 //! *Invariant:* an operation is applied only as [`Legal`], which only `check` makes.
 
+mod around;
 mod collapse;
 mod flip;
 mod split;
 
+pub use around::around;
 pub use collapse::Collapse;
 pub use flip::{Flip, Turn};
 pub use split::Split;

@@ -11,7 +11,7 @@ use crate::mesh::Vector;
 
 /// What is asked of shapes.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Shape {
+pub(crate) struct Shape {
     /// The largest cosine between diagonals that needs no turning.
     sin_slant: f64,
     /// Cosine and sine of half the least and half the largest angle between diagonals.
@@ -22,7 +22,7 @@ pub(super) struct Shape {
 }
 
 impl Shape {
-    pub(super) fn new(slant_deg: f64, hang_deg: f64) -> Self {
+    pub(crate) fn new(slant_deg: f64, hang_deg: f64) -> Self {
         let slant = slant_deg.to_radians();
         let half = |angle: f64| [(angle * 0.5).cos(), (angle * 0.5).sin()];
         Self {
@@ -35,7 +35,7 @@ impl Shape {
 }
 
 /// The nearest rectangle to four arms from a common centre, as arms from that centre. O(1).
-pub(super) fn rectangle(arms: &[Vector; 4], normal: &Vector, shape: &Shape) -> [Vector; 4] {
+pub(crate) fn rectangle(arms: &[Vector; 4], normal: &Vector, shape: &Shape) -> [Vector; 4] {
     let (u, v) = half_diagonals(arms, normal, shape);
     [-u, -v, u, v]
 }
@@ -130,7 +130,7 @@ pub(super) fn regular_polygon(arms: &mut [Vector], normal: &Vector) {
 }
 
 /// Fits a polygon of five and more corners of which `may_hang` may be T-junctions. O(d²).
-pub(super) fn polygon(
+pub(crate) fn polygon(
     arms: &mut [Vector],
     may_hang: impl Fn(usize) -> bool,
     normal: &Vector,

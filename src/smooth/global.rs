@@ -83,7 +83,7 @@ pub fn smooth(
 }
 
 /// The limits that follow from the start where none are given.
-fn limits(
+pub(crate) fn limits(
     start: &Finding,
     options: &SmoothOptions,
     budget: Option<Budget>,

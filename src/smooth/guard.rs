@@ -17,19 +17,19 @@ const SOUND: f64 = 0.02;
 const SLIP: f64 = 0.05;
 
 /// The limits, and the samples that they are checked on.
-pub(super) struct Guard<'a> {
-    pub(super) reference: &'a Reference,
-    pub(super) places: Vec<Point>,
-    pub(super) samples: usize,
+pub(crate) struct Guard<'a> {
+    pub(crate) reference: &'a Reference,
+    pub(crate) places: Vec<Point>,
+    pub(crate) samples: usize,
     /// 1 if the mesh is oriented like the reference, else −1.
-    pub(super) sign: f64,
+    pub(crate) sign: f64,
 }
 
 /// The state of a mesh, face by face.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Finding {
-    pub(super) deviation: Deviation,
-    pub(super) least_jacobian: f64,
+pub(crate) struct Finding {
+    pub(crate) deviation: Deviation,
+    pub(crate) least_jacobian: f64,
     /// Scaled Jacobian of each face; 1 unless it is a quad.
     jacobian: Vec<f64>,
     /// Whether the face is turned over against the reference.
@@ -42,15 +42,15 @@ pub(super) struct Finding {
 
 /// What is allowed.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Limits {
-    pub(super) budget: Budget,
+pub(crate) struct Limits {
+    pub(crate) budget: Budget,
     /// Least scaled Jacobian of a quad that was not worse before.
-    pub(super) jacobian: f64,
+    pub(crate) jacobian: f64,
 }
 
 impl Guard<'_> {
     /// Measures `mesh`. O(n log n), parallel.
-    pub(super) fn check(&self, mesh: &PolyMesh) -> Finding {
+    pub(crate) fn check(&self, mesh: &PolyMesh) -> Finding {
         let n = mesh.face_count();
         let jacobian: Vec<f64> =
             mesh.faces().map(|face| scaled_jacobian(mesh.points(), face)).collect();
@@ -118,7 +118,7 @@ impl Finding {
 
     /// Faces that break a limit, ascending; if the mean square does, those that have added most
     /// to it since `start`.
-    pub(super) fn broken(&self, start: &Self, limits: &Limits) -> Vec<u32> {
+    pub(crate) fn broken(&self, start: &Self, limits: &Limits) -> Vec<u32> {
         let floor = |f: usize| {
             let before = start.jacobian[f];
             (limits.jacobian.min(before) - SLIP).max(before.min(SOUND))

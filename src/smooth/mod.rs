@@ -11,6 +11,7 @@
 //! the number of threads.
 
 mod anchors;
+mod around;
 mod fit;
 mod global;
 mod guard;
@@ -20,8 +21,13 @@ mod untangle;
 
 use crate::knobs::knobs;
 
+pub(crate) use anchors::watched;
+pub use around::Surroundings;
+pub(crate) use fit::{Shape, polygon, rectangle};
+pub(crate) use global::limits;
 pub use global::{SmoothReport, held_vertices, smooth};
 pub use guard::Budget;
+pub(crate) use guard::Guard;
 pub use region::{Orientation, Region, RelaxReport, orientation, relax_local};
 
 knobs! {

@@ -1,0 +1,204 @@
+//! `quadmend convert`: the same surface as another kind of mesh.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use quadmend::io;
+use quadmend::mesh::{MendPolicy, MeshError, PolyMesh, mend};
+use quadmend::metrics::table;
+use quadmend::pipeline::pure_quad::{Report, pure_quad};
+use quadmend::views::{Label, View, catmull_clark, dual, primal, sqrt_cc};
+use quadmend::watch::{Phase, Watch};
+
+use super::failure::Failure;
+use super::paths::{self, is_stream};
+use super::progress::Progress;
+use super::settings::{Running, Settings};
+use super::{Exit, output};
+
+const EXAMPLES: &str = "\
+Examples:
+  quadmend convert clean.obj --to pure-quad --reference scan.obj -o quads.obj
+  quadmend convert clean.obj --to sqrtcc -o inspect.obj
+  quadmend convert inspect.obj --to primal -o again.obj
+
+Pure quads: irregular faces become irregular vertices, in pairs; E stays about the same, less where
+pairs cancel. A part of the mesh that is enclosed by an odd number of boundary and feature edges
+cannot be all quads: what is left is told, the output is written all the same, and the exit code
+is 4. With --set features.crease_deg=180 no feature is kept, and only boundaries can stop it.
+
+Views are for inspection: vertices of the mesh are red, its faces blue, its edges green, and what
+would be faces beyond a boundary grey (as colours of the vertices, which Blender and MeshLab show).";
+
+/// Convert a mesh to pure quads, or to a view of its √CC, dual or Catmull-Clark mesh
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Convert {
+    /// The mesh to convert (OBJ, - for standard input)
+    input: PathBuf,
+
+    /// What to convert it to
+    #[arg(long, value_name = "KIND")]
+    to: Kind,
+
+    /// Where the result goes (OBJ, - for standard output); never an input unless --force is given
+    #[arg(short, long, value_name = "MESH")]
+    output: PathBuf,
+
+    /// For pure-quad: surface to stay on, in the same position and scale (OBJ, - for standard
+    /// input) [default: the input]
+    #[arg(short, long, value_name = "MESH")]
+    reference: Option<PathBuf>,
+
+    /// For primal: what the first vertex of each component stands for [default: p]
+    #[arg(long, value_name = "LABEL")]
+    first: Option<First>,
+
+    /// For pure-quad: write the report as JSON (- for standard output) [default: none]
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+
+    /// Refuse a mesh that has anything to mend, instead of mending it [default: mend and tell]
+    #[arg(long)]
+    strict: bool,
+
+    /// Allow an output to replace an input
+    #[arg(long)]
+    force: bool,
+
+    #[command(flatten)]
+    settings: Settings,
+
+    #[command(flatten)]
+    running: Running,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    /// Quads only: every irregular face becomes irregular vertices
+    PureQuad,
+    /// The √CC mesh: a quad for each edge
+    Sqrtcc,
+    /// The dual: a face for each vertex
+    Dual,
+    /// One step of subdivision, unsmoothed: a quad for each corner
+    CatmullClark,
+    /// Back from a √CC mesh
+    Primal,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum First {
+    /// A vertex
+    P,
+    /// A face
+    D,
+}
+
+impl Convert {
+    pub(super) fn run(&self) -> Result<Exit, Failure> {
+        self.check_arguments()?;
+        let progress = self.running.start()?;
+        progress.progress(Phase::Read, 0, 1, None);
+        let mesh = progress.read(&self.input)?;
+        match self.to {
+            Kind::PureQuad => self.pure_quad(mesh, progress),
+            kind => self.view(mesh, kind, &progress),
+        }
+    }
+
+    fn check_arguments(&self) -> Result<(), Failure> {
+        if self.to != Kind::PureQuad && (self.reference.is_some() || self.json.is_some()) {
+            return Err(Failure::usage("--reference and --json are for `--to pure-quad` only"));
+        }
+        if self.to != Kind::Primal && self.first.is_some() {
+            return Err(Failure::usage("--first is for `--to primal` only"));
+        }
+        let meshes: Vec<&Path> =
+            std::iter::once(&*self.input).chain(self.reference.as_deref()).collect();
+        let outputs = (&*self.output, self.json.as_deref());
+        paths::check(&meshes, self.settings.config.as_deref(), outputs, self.force)
+    }
+
+    fn policy(&self) -> MendPolicy {
+        if self.strict { MendPolicy::Strict } else { MendPolicy::Mend }
+    }
+
+    fn pure_quad(&self, mesh: PolyMesh, progress: Progress) -> Result<Exit, Failure> {
+        let config = self.settings.load()?;
+        let reference = self.reference.as_deref().map(|path| progress.read(path)).transpose()?;
+        let converted = pure_quad(mesh, reference.as_ref(), self.policy(), &config, &progress)
+            .map_err(|e| self.failure(e))?;
+        progress.progress(Phase::Write, 0, 1, None);
+        io::write(&self.output, &converted.mesh)?;
+        if let Some(path) = &self.json {
+            output::file(path, &output::json(&converted.report)?)?;
+        }
+        progress.finish();
+        self.tell(&converted.report)?;
+        Ok(exit(&converted.report))
+    }
+
+    fn tell(&self, report: &Report) -> Result<(), Failure> {
+        let conversion = &report.conversion;
+        for obstruction in &conversion.obstructions {
+            output::note(&format!("not a quad: {obstruction}"));
+        }
+        let others = conversion.left.len().saturating_sub(conversion.obstructions.len());
+        if others > 0 {
+            output::note(&format!("not a quad: {others} faces for which no way was found"));
+        }
+        if self.running.quiet {
+            return Ok(());
+        }
+        for mend in &report.mends.mends {
+            output::note(&format!("mended: {}", mend.sentence));
+        }
+        output::note(&format!(
+            "faces divided: {}, pairs converted: {}, operations: {}",
+            conversion.divided,
+            conversion.pairs,
+            conversion.ops.len()
+        ));
+        let table = table(&[("before", &report.before), ("after", &report.after)]);
+        let taken = is_stream(&self.output) || self.json.as_deref().is_some_and(is_stream);
+        output::table(&table, taken)
+    }
+
+    fn view(&self, mesh: PolyMesh, kind: Kind, progress: &Progress) -> Result<Exit, Failure> {
+        if kind == Kind::Primal {
+            let first = if self.first == Some(First::D) { Label::Face } else { Label::Vertex };
+            io::write(&self.output, &primal(&mesh, first).map_err(|e| self.failure(e))?)?;
+            return Ok(Exit::Done);
+        }
+        let (mesh, mends) = mend(mesh, self.policy()).map_err(|e| self.failure(e))?;
+        for mend in &mends.mends {
+            progress.tell(&format!("mended: {}", mend.sentence));
+        }
+        let View { mesh, labels } = domain(kind)(&mesh).map_err(|e| self.failure(e))?;
+        let colours: Vec<[f64; 3]> = labels.into_iter().map(Label::colour).collect();
+        io::write_coloured(&self.output, &mesh, &colours)?;
+        Ok(Exit::Done)
+    }
+
+    fn failure(&self, error: impl std::error::Error + Send + Sync + 'static) -> Failure {
+        Failure::of_file(&paths::shown(&self.input), error)
+    }
+}
+
+fn domain(kind: Kind) -> fn(&PolyMesh) -> Result<View, MeshError> {
+    match kind {
+        Kind::Dual => dual,
+        Kind::CatmullClark => catmull_clark,
+        _ => sqrt_cc,
+    }
+}
+
+fn exit(report: &Report) -> Exit {
+    let conversion = &report.conversion;
+    match (conversion.left.is_empty(), conversion.ops.is_empty()) {
+        (false, _) => Exit::LimitMissed,
+        (true, true) if report.mends.mends.is_empty() => Exit::NothingToImprove,
+        (true, _) => Exit::Done,
+    }
+}

@@ -1,0 +1,129 @@
+//! From a quad-dominant mesh to one of quads only: mend → lift → convert → relax → lower.
+//!
+//! The connectivity is the work of [`crate::moves::pure`]; here the surroundings of each change
+//! are relaxed on the reference, and at the end all of them together within the budget of
+//! distance. What is far from any change stays as it is, to the bit.
+
+use super::{CleanError, budget, lift_held};
+use crate::config::Config;
+use crate::mesh::{MendPolicy, MendReport, MeshError, PolyMesh, Topology, check, mend};
+use crate::metrics::{Metrics, Target, measure};
+use crate::moves::pure::{self, Conversion, Kind};
+use crate::smooth::{Budget, Surroundings, orientation, smooth};
+use crate::sqrtcc::{QuadMesh, Vertex, lower};
+use crate::surface::{Reference, deviation, mean_edge};
+use crate::watch::{Phase, Watch};
+use serde::Serialize;
+
+/// Rings of faces around a change that are relaxed with it.
+const RINGS: u32 = 3;
+/// Iterations of relaxing after each change.
+const SWEEPS: u32 = 24;
+/// A change after which a quad has a scaled Jacobian below this is made only if there is no other.
+const POOR: f64 = 0.25;
+/// Samples each way for the distance before smoothing.
+const SAMPLES: usize = 20_000;
+/// Room for a budget that is met exactly: none at all and smoothing could only stand still.
+const HARDLY_MORE: f64 = 1.002;
+
+/// What was done to a mesh.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report {
+    /// Defects that were mended before anything else.
+    pub mends: MendReport,
+    /// Edges that were held as sharp features.
+    pub feature_edges: usize,
+    /// The mesh as it was read.
+    pub before: Metrics,
+    /// The mesh that is returned.
+    pub after: Metrics,
+    /// The change of connectivity.
+    pub conversion: Conversion,
+}
+
+/// A converted mesh and how it came about.
+#[derive(Debug, Clone)]
+pub struct Converted {
+    /// The mesh: quads only, unless the report names what must be left.
+    pub mesh: PolyMesh,
+    /// What was done.
+    pub report: Report,
+}
+
+/// Converts every face of `mesh` that is no quad, on the surface of `reference` (its own if there
+/// is none). Boundaries, features and their vertices stay as they are.
+pub fn pure_quad(
+    mesh: PolyMesh,
+    reference: Option<&PolyMesh>,
+    policy: MendPolicy,
+    config: &Config,
+    watch: &dyn Watch,
+) -> Result<Converted, CleanError> {
+    let raw = mesh.clone();
+    let (mesh, mends) = mend(mesh, policy)?;
+    let surface = reference.unwrap_or(&mesh);
+    watch.progress(Phase::Measure, 0, 2, None);
+    let target = Target::new(surface, &config.measure)?;
+    let before = measure(&raw, Some(&target))?;
+    let (q, feature_edges, conversion) = edit(&mesh, surface, config, watch)?;
+    let result = lower(&q, mesh.group_names())?.mesh;
+    check(&result).map_err(CleanError::Flawed)?;
+    watch.progress(Phase::Measure, 1, 2, None);
+    let after = measure(&result, Some(&target))?;
+    let report = Report { mends, feature_edges, before, after, conversion };
+    Ok(Converted { mesh: result, report })
+}
+
+/// Lifts, converts and smooths; also the number of feature edges.
+fn edit(
+    mesh: &PolyMesh,
+    surface: &PolyMesh,
+    config: &Config,
+    watch: &dyn Watch,
+) -> Result<(QuadMesh, usize, Conversion), CleanError> {
+    let reference = Reference::new(surface)?;
+    let topology = Topology::new(mesh);
+    let allowed = budget(mesh, &reference, (&config.gate, mean_edge(mesh, &topology)))?;
+    let (mut q, feature_edges) = lift_held(mesh, &topology, &reference, &config.features)?;
+    let side = orientation(mesh, &reference);
+    let mut touched = Vec::new();
+    let mut settle = |q: &mut QuadMesh, changed: &[Vertex]| {
+        let around = Surroundings::gather(q, changed, RINGS);
+        touched.extend_from_slice(changed);
+        around.relax(q, (&reference, side), &config.relax, SWEEPS) - POOR
+    };
+    let conversion = pure::convert(&mut q, Kind::Faces, &mut settle, watch);
+    smooth_around(&mut q, &touched, (&reference, allowed), config, watch)?;
+    q.commit();
+    Ok((q, feature_edges, conversion))
+}
+
+/// Smooths what is near the `touched` vertices, within the budget of distance.
+fn smooth_around(
+    q: &mut QuadMesh,
+    touched: &[Vertex],
+    (reference, allowed): (&Reference, Budget),
+    config: &Config,
+    watch: &dyn Watch,
+) -> Result<(), MeshError> {
+    let lowered = lower(q, &[String::new()])?;
+    let mut held = vec![true; q.vertex_ids() as usize];
+    for v in Surroundings::gather(q, touched, RINGS).free(q) {
+        held[v as usize] = false;
+    }
+    let held: Vec<bool> = lowered.vertex_ids.iter().map(|&v| held[v as usize]).collect();
+    let start = Reference::plain(&lowered.mesh).map(|m| deviation(&m, reference, SAMPLES));
+    let start = start.unwrap_or_default();
+    let limit =
+        |allowed: f64, start: f64| (allowed * config.smooth.budget).max(HARDLY_MORE * start);
+    let budget = Budget {
+        hausdorff: limit(allowed.hausdorff, start.hausdorff),
+        rms: limit(allowed.rms, start.rms),
+    };
+    let options = (&config.smooth, &config.relax);
+    let (points, _) = smooth(&lowered.mesh, &held, reference, options, Some(budget), watch);
+    for (&v, point) in lowered.vertex_ids.iter().zip(points) {
+        q.set_position(v, point);
+    }
+    Ok(())
+}
