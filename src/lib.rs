@@ -7,6 +7,7 @@
 //! read → mesh → lift → plan → edit → lower → smooth → measure → write.
 
 pub mod config;
+pub mod elements;
 pub mod io;
 pub mod knobs;
 pub mod mesh;
@@ -16,6 +17,8 @@ pub mod ops;
 pub mod patch;
 pub mod pipeline;
 pub mod planner;
+pub mod render;
+pub mod report;
 pub mod script;
 pub mod smooth;
 pub mod sqrtcc;

@@ -5,6 +5,7 @@
 //!
 //! *Invariant:* this is the only place that prints, looks at the clock or at the terminal.
 
+mod aftermath;
 mod clean;
 mod compare;
 mod config;
@@ -13,12 +14,15 @@ mod edit;
 mod failure;
 mod generate;
 mod limits;
+mod look;
 mod measuring;
 mod metrics;
 mod output;
 mod paths;
+mod pictures;
 mod plan;
 mod progress;
+mod render;
 mod settings;
 mod summary;
 
@@ -59,6 +63,7 @@ Examples:
   quadmend metrics remesh.obj                               what is wrong with it?
   quadmend compare remesh.obj clean.obj --reference scan.obj
   quadmend edit remesh.obj --script edits.toml -o edited.obj   make chosen edits
+  quadmend render remesh.obj clean.obj -o both.png          how does it look?
   quadmend config explain smooth                            what can be tuned?";
 
 /// Cleans the connectivity of quad-dominant meshes: irregular vertices and faces and T-junctions
@@ -78,6 +83,7 @@ enum Command {
     Compare(compare::Compare),
     Plan(plan::Plan),
     Edit(edit::Edit),
+    Render(render::Render),
     Demo(demo::Demo),
     Config(config::ConfigCommand),
     Generate(generate::Generate),
@@ -96,6 +102,7 @@ fn run(command: &Command) -> Result<Exit, Failure> {
         Command::Compare(command) => command.run(),
         Command::Plan(command) => command.run(),
         Command::Edit(command) => command.run(),
+        Command::Render(command) => command.run(),
         Command::Demo(command) => command.run(),
         Command::Config(command) => command.run(),
         Command::Generate(command) => command.run(),

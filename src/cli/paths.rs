@@ -52,3 +52,10 @@ pub(super) fn shown(path: &Path) -> String {
 pub(super) fn short_name(path: &Path) -> String {
     path.file_name().map_or_else(|| path.display().to_string(), |n| n.display().to_string())
 }
+
+/// File names, or whole paths where file names would not tell the files apart.
+pub(super) fn names<F: AsRef<Path>>(files: &[F]) -> Vec<String> {
+    let short: Vec<String> = files.iter().map(|f| short_name(f.as_ref())).collect();
+    let unique = short.iter().enumerate().all(|(i, name)| !short[..i].contains(name));
+    if unique { short } else { files.iter().map(|f| f.as_ref().display().to_string()).collect() }
+}

@@ -8,6 +8,7 @@ use quadmend::mesh::MendPolicy;
 use quadmend::pipeline::plan;
 use quadmend::planner::edit::Edit;
 use quadmend::planner::schedule::EditRecord;
+use quadmend::report;
 use quadmend::watch::{Phase, Watch};
 
 use super::failure::Failure;
@@ -80,7 +81,7 @@ fn table(edits: &[EditRecord]) -> String {
             text,
             "{number:>5} {:>5}  {:<26} {:>7} {:>8.2} {:>8.1}  {x:.4} {y:.4} {z:.4}{}",
             record.round,
-            kind(&record.edit),
+            report::words(&record.edit),
             record.gain,
             record.cost,
             record.angle_growth_deg,
@@ -88,17 +89,6 @@ fn table(edits: &[EditRecord]) -> String {
         );
     }
     text
-}
-
-fn kind(edit: &Edit) -> String {
-    match edit {
-        Edit::Local { ops } => format!("local, {} op", ops.len()),
-        Edit::Walk { cancellation, steps, .. } => {
-            format!("{cancellation:?} cancellation, {} steps", steps.len())
-        }
-        Edit::TypeChange { .. } => "type change".to_owned(),
-        Edit::Refill(_) => "refill".to_owned(),
-    }
 }
 
 fn terms(edit: &Edit) -> String {
