@@ -49,6 +49,13 @@ export class Layers {
     }
   }
 
+  /** Thins out lines that are only so many pixels from one another, so that faces still show. */
+  fade(pixels) {
+    for (const { material, role } of this.lineMaterials) {
+      if (role === "edge") material.opacity = Math.min(1, Math.max(0.18, pixels / 10));
+    }
+  }
+
   #faces() {
     const { corners, faces } = this.surface.triangles;
     const positions = new Float32Array(3 * corners.length);
@@ -115,7 +122,7 @@ export class Layers {
   #thinLines(positions) {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(positions, 3));
-    const material = new LineBasicMaterial();
+    const material = new LineBasicMaterial({ transparent: true });
     this.lineMaterials.push({ material, role: "edge" });
     return new LineSegments(geometry, material);
   }

@@ -73,9 +73,10 @@ export function markMaterial() {
       varying float vShape;
       void main() {
         vec2 p = 2.0 * gl_PointCoord - 1.0;
-        float r = vShape == 1.0 ? abs(p.x) + abs(p.y) : length(p);
+        // Shapes come interpolated, and so not exactly.
+        float r = vShape > 0.5 && vShape < 1.5 ? abs(p.x) + abs(p.y) : length(p);
         float soft = fwidth(r);
-        if (vShape == 2.0) {
+        if (vShape > 1.5) {
           float ring = smoothstep(0.66 - soft, 0.66, r) * (1.0 - smoothstep(1.0 - soft, 1.0, r));
           if (ring < 0.05) discard;
           gl_FragColor = vec4(vTint, ring);

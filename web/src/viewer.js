@@ -1,9 +1,12 @@
 // Two linked views on one canvas: the same camera, a mesh on each side.
 import {
-  Box3, BufferAttribute, BufferGeometry, Color, ColorManagement, LineBasicMaterial, LineLoop,
-  LinearSRGBColorSpace, PerspectiveCamera, Points, Raycaster, Scene, Vector2, Vector3, WebGLRenderer,
+  Box3, BufferAttribute, BufferGeometry, Color, ColorManagement, LinearSRGBColorSpace,
+  PerspectiveCamera, Points, Raycaster, Scene, Vector2, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { LineMaterial } from "three/addons/lines/LineMaterial.js";
+import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
+import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 import { Layers } from "./layers.js";
 import { markMaterial } from "./materials.js";
 import { theme } from "./palette.js";
@@ -121,20 +124,22 @@ export class Viewer {
     this.chosen?.geometry.dispose();
     this.chosen = null;
     if (points) {
-      const geometry = new BufferGeometry();
-      geometry.setAttribute("position", new BufferAttribute(Float32Array.from(points.flat()), 3));
-      this.chosen = points.length > 1 ? this.#loop(geometry) : this.#target(geometry);
+      this.chosen = points.length > 1 ? this.#loop(points) : this.#target(points[0]);
       this.chosen.renderOrder = 2;
       this.layersOf(i).group.add(this.chosen);
     }
     this.resize();
   }
 
-  #loop(geometry) {
-    return new LineLoop(geometry, new LineBasicMaterial({ color: CHOSEN, depthTest: false }));
+  #loop(points) {
+    const ends = points.flatMap((point, i) => [...point, ...points[(i + 1) % points.length]]);
+    const material = new LineMaterial({ color: CHOSEN, linewidth: 3.5, depthTest: false });
+    return new LineSegments2(new LineSegmentsGeometry().setPositions(ends), material);
   }
 
-  #target(geometry) {
+  #target(point) {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(Float32Array.from(point), 3));
     const colour = new Color(CHOSEN);
     geometry.setAttribute("tint", new BufferAttribute(Float32Array.of(...colour.toArray()), 3));
     geometry.setAttribute("shape", new BufferAttribute(Float32Array.of(2), 1));
@@ -169,14 +174,18 @@ export class Viewer {
   #draw() {
     const frame = this.canvas.getBoundingClientRect();
     this.renderer.setClearColor(theme().paper);
+    const away = this.camera.position.distanceTo(this.controls.target);
     this.panes.forEach((pane) => {
       const box = pane.element.getBoundingClientRect();
       const [x, y] = [box.left - frame.left, frame.bottom - box.bottom];
       this.renderer.setViewport(x, y, box.width, box.height);
       this.renderer.setScissor(x, y, box.width, box.height);
       // An object has one parent: both sides may show the same mesh, one after the other.
+      const layers = this.layers.get(pane.mesh);
+      const pixels = box.height / (2 * away * Math.tan((FOV_DEG * Math.PI) / 360));
+      layers.fade(layers.surface.meanEdge * pixels);
       this.scene.clear();
-      this.scene.add(this.layers.get(pane.mesh).group);
+      this.scene.add(layers.group);
       this.renderer.render(this.scene, this.camera);
     });
     this.frames += 1;
