@@ -152,6 +152,8 @@ fn the_report_works_in_a_browser() {
     let at = browser.middle("table.edits button");
     browser.click(at);
     settle(&mut browser);
+    let info = browser.value("document.querySelector('#info').innerText").to_string();
+    assert!(info.contains("Edit 1") && info.contains("removed"), "{info}");
     keep("demo-edit", &browser.screenshot());
     browser.value("scrollTo(0, 0)");
     let at = browser.middle("button[name=theme]");

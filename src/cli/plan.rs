@@ -71,7 +71,7 @@ impl Plan {
 
 fn table(edits: &[EditRecord]) -> String {
     let mut text = format!(
-        "{:>5} {:>5}  {:<26} {:>7} {:>8} {:>8}  place\n",
+        "{:>5} {:>5}  {:<36} {:>7} {:>8} {:>8}  place\n",
         "edit", "round", "kind", "removed", "cost", "angle"
     );
     for (number, record) in (1..).zip(edits) {
@@ -79,7 +79,7 @@ fn table(edits: &[EditRecord]) -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "{number:>5} {:>5}  {:<26} {:>7} {:>8.2} {:>8.1}  {x:.4} {y:.4} {z:.4}{}",
+            "{number:>5} {:>5}  {:<36} {:>7} {:>8.2} {:>8.1}  {x:.4} {y:.4} {z:.4}{}",
             record.round,
             report::words(&record.edit),
             record.gain,

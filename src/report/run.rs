@@ -6,6 +6,7 @@ use crate::mesh::Point;
 use crate::pipeline::Report;
 use crate::planner::edit::Edit;
 use crate::planner::gate::Failure;
+use crate::planner::movement::Cancellation;
 use crate::planner::schedule::{EditRecord, RoundRecord};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -99,7 +100,12 @@ pub fn words(edit: &Edit) -> String {
     match edit {
         Edit::Local { ops } => format!("local, {} ops", ops.len()),
         Edit::Walk { cancellation, steps, .. } => {
-            format!("{cancellation:?} cancellation, {} steps", steps.len())
+            let of = match cancellation {
+                Cancellation::Triple => "triple",
+                Cancellation::TJunctionPair => "T-junction pair",
+                Cancellation::Quadruple => "quadruple",
+            };
+            format!("{of} cancellation, {} steps", steps.len())
         }
         Edit::TypeChange { .. } => "type change".to_owned(),
         Edit::Refill(_) => "refill".to_owned(),

@@ -86,7 +86,10 @@ function curveChart(run, viewer) {
     dot.setAttribute("cy", y(curve[i]));
     caption.textContent = `edit ${i}: ${edits[i - 1].what}, E = ${curve[i]}`;
   });
-  drawing.addEventListener("click", (event) => viewer.visit(edits[numberAt(event) - 1].place));
+  drawing.addEventListener("click", (event) => {
+    const number = numberAt(event);
+    viewer.visit(edits[number - 1], number);
+  });
   drawing.setAttribute("aria-label", "Irregularity against the number of edits");
   return el("figure", { class: "clickable" }, [drawing, caption]);
 }

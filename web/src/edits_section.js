@@ -35,7 +35,7 @@ export function editsSection(data, viewer) {
 function row(edit, number, viewer) {
   const terms = edit.terms.map(([name, cost]) => `${name} ${shown(cost, 3)}`).join(", ");
   const go = el("button", {
-    type: "button", class: "link", title: "go there", click: () => viewer.visit(edit.place),
+    type: "button", class: "link", title: "go there", click: () => viewer.visit(edit, number),
   }, String(number));
   const cells = [go, edit.round, edit.what, shown(edit.gain), edit.cost ? shown(edit.cost, 3) : "–", terms || "–"];
   return el("tr", {}, [

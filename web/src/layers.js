@@ -132,7 +132,9 @@ export class Layers {
       if (pairs.length === 0) continue;
       const positions = new Float32Array(3 * pairs.length);
       pairs.forEach((v, i) => positions.set(this.surface.point(v), 3 * i));
-      const material = new LineMaterial({ linewidth: 2.5 });
+      const material = new LineMaterial({
+        linewidth: 2.5, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -6,
+      });
       this.lineMaterials.push({ material, role });
       const lines = new LineSegments2(new LineSegmentsGeometry().setPositions(positions), material);
       // In both domains: a feature is the same line in each.

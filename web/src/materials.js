@@ -64,7 +64,7 @@ export function markMaterial() {
         vShape = shape;
         gl_PointSize = clamp(size * scale / -place.z, 5.0 * ratio, 26.0 * ratio) * grow;
         // Nearer than the faces around, unless the surface is steep.
-        place.xyz *= 1.0 - 0.5 * size / length(place.xyz);
+        place.xyz *= 1.0 - 0.9 * size / length(place.xyz);
         gl_Position = projectionMatrix * place;
       }`,
     fragmentShader: `

@@ -33,7 +33,7 @@ export class Viewer {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.invalidate());
     this.scene = new Scene();
-    this.chosen = null;
+    this.chosen = [];
     this.frames = 0;
     this.#listen();
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
@@ -118,15 +118,19 @@ export class Viewer {
     requestAnimationFrame(step);
   }
 
-  /** Marks what was chosen in pane `i`: a loop of points, or a single one. */
-  choose(i, points) {
-    this.chosen?.removeFromParent();
-    this.chosen?.geometry.dispose();
-    this.chosen = null;
-    if (points) {
-      this.chosen = points.length > 1 ? this.#loop(points) : this.#target(points[0]);
-      this.chosen.renderOrder = 2;
-      this.layersOf(i).group.add(this.chosen);
+  /** Marks what was chosen in some of the panes: a loop of points, or a single one; or nothing. */
+  choose(panes, points) {
+    for (const mark of this.chosen) {
+      mark.removeFromParent();
+      mark.geometry.dispose();
+    }
+    this.chosen = [];
+    for (const layers of points ? new Set(panes.map((i) => this.layersOf(i))) : []) {
+      const size = layers.surface.meanEdge;
+      const mark = points.length > 1 ? this.#loop(points) : this.#target(points[0], size);
+      mark.renderOrder = 2;
+      layers.group.add(mark);
+      this.chosen.push(mark);
     }
     this.resize();
   }
@@ -137,7 +141,7 @@ export class Viewer {
     return new LineSegments2(new LineSegmentsGeometry().setPositions(ends), material);
   }
 
-  #target(point) {
+  #target(point, meanEdge) {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(Float32Array.from(point), 3));
     const colour = new Color(CHOSEN);
@@ -146,7 +150,7 @@ export class Viewer {
     geometry.setAttribute("grow", new BufferAttribute(Float32Array.of(2.4), 1));
     const material = markMaterial();
     material.depthTest = false;
-    material.uniforms.size.value = 0.55 * this.layersOf(0).surface.meanEdge;
+    material.uniforms.size.value = 0.55 * meanEdge;
     return new Points(geometry, material);
   }
 

@@ -1,5 +1,5 @@
 // The two views with their tools, and what is known about the element that was chosen.
-import { el, shown } from "./dom.js";
+import { el, shown, signed } from "./dom.js";
 import { HEAT_CSS, MINUS, MINUS_MORE, PLUS, PLUS_MORE, T_JUNCTION } from "./palette.js";
 import { describe, elementAt, placeOf, tour } from "./inspect.js";
 import { Viewer } from "./viewer.js";
@@ -47,13 +47,19 @@ class ViewerSection {
     this.viewer?.apply();
   }
 
-  /** Goes to a place of the run, in both views. */
-  visit(place) {
+  /** Goes to where an edit was made, in both views, and says what it was. */
+  visit(edit, number) {
     if (!this.viewer) return;
+    const { place } = edit;
     const { surface } = this.viewer.layersOf(1);
     const v = surface.nearestVertex(place);
     this.viewer.goTo(place, surface.vertexNormals.subarray(3 * v, 3 * v + 3), surface.meanEdge);
-    this.viewer.choose(1, [place]);
+    this.viewer.choose([0, 1], [place]);
+    this.#tell(`Edit ${number}`, edit.what, [
+      ["elements removed", shown(edit.gain)],
+      ["growth of angles", `${signed(Math.round(edit.angle * 10) / 10)}°`],
+      ...edit.terms.map(([name, cost]) => [`cost of ${name}`, shown(cost, 3)]),
+    ]);
     this.element.scrollIntoView({ block: "start" });
   }
 
@@ -109,7 +115,7 @@ class ViewerSection {
     pane.chosen = m;
     pane.stop = -1;
     if (!this.viewer) return;
-    this.viewer.choose(0, null);
+    this.viewer.choose([], null);
     this.viewer.setMesh(i, this.data.meshes[m]);
     pane.count.textContent = `${this.#tour(i).length} irregular`;
   }
@@ -136,7 +142,7 @@ class ViewerSection {
   #picked(i, hit) {
     if (hit) this.#select(i, elementAt(this.viewer.layersOf(i).surface, hit));
     else {
-      this.viewer.choose(i, null);
+      this.viewer.choose([i], null);
       this.info.replaceChildren(el("p", { class: "faint" }, "Nothing there."));
     }
   }
@@ -144,9 +150,13 @@ class ViewerSection {
   #select(i, element) {
     const { surface } = this.viewer.layersOf(i);
     const { title, facts } = describe(surface, element, this.data.fields);
-    this.viewer.choose(i, placeOf(surface, element).outline);
+    this.viewer.choose([i], placeOf(surface, element).outline);
+    this.#tell(title, this.panes[i].mesh.name, facts);
+  }
+
+  #tell(title, more, facts) {
     this.info.replaceChildren(
-      el("h3", {}, [title, " ", el("span", { class: "faint" }, this.panes[i].mesh.name)]),
+      el("h3", {}, [title, " ", el("span", { class: "faint" }, more)]),
       el("dl", {}, facts.flatMap(([term, value]) => [el("dt", {}, term), el("dd", {}, value)])),
     );
   }
