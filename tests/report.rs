@@ -130,6 +130,10 @@ fn drive(browser: &mut Browser, file: &Path, name: &str) {
     assert!(share > 0.1, "{name}: the √CC domain is not to be seen");
     let told = browser.value("document.querySelector('.pane .count').innerText").to_string();
     assert!(told.contains("1 of ") || told.contains("0 irregular"), "{name}: {told}");
+    browser.value("document.querySelector('canvas').focus()");
+    browser.key("p");
+    let told = browser.value("document.querySelector('.pane .count').innerText").to_string();
+    assert!(told.contains(" of ") || told.contains("0 irregular"), "{name}: {told}");
     browser.choose("domain", "");
     for shading in ["smooth", "wireframe", "flat"] {
         browser.choose("shading", shading);

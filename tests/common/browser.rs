@@ -166,6 +166,13 @@ impl Browser {
         );
     }
 
+    /// Presses a key of one letter.
+    pub(crate) fn key(&mut self, key: &str) {
+        for kind in ["keyDown", "keyUp"] {
+            self.call("Input.dispatchKeyEvent", &json!({ "type": kind, "key": key, "text": key }));
+        }
+    }
+
     /// Chooses an option as a person would with the keyboard.
     pub(crate) fn choose(&mut self, name: &str, value: &str) {
         self.value(&format!(

@@ -31,6 +31,7 @@ export class Viewer {
     this.renderer.setScissorTest(true);
     this.camera = new PerspectiveCamera(FOV_DEG);
     this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.listenToKeyEvents(canvas);
     this.controls.addEventListener("change", () => this.invalidate());
     this.scene = new Scene();
     this.chosen = [];

@@ -13,7 +13,12 @@ class ViewerSection {
   constructor(data) {
     this.data = data;
     this.tours = new Map();
-    this.canvas = el("canvas", { tabindex: 0, "aria-label": "Meshes in 3D: drag to turn, click an element" });
+    this.canvas = el("canvas", {
+      tabindex: 0,
+      "aria-label": "Meshes in 3D. Drag to turn, arrow keys to move, n and p for the next and previous irregular element, r to reset",
+      keydown: (event) => this.#key(event),
+    });
+    this.active = 0;
     this.panes = [0, Math.min(1, data.meshes.length - 1)].map((m, i) => this.#pane(m, i));
     this.info = el("div", { class: "info", id: "info", "aria-live": "polite" }, [
       el("p", { class: "faint" }, "Click a vertex or a face to see its numbers. Elements are counted from 1, as in OBJ files."),
@@ -98,7 +103,7 @@ class ViewerSection {
         (value) => { this.viewer?.set({ liftedDomain: value !== "" }); this.#drawLegend(); }),
       choice("Up", "up", [["y", "y"], ["z", "z"]], (up) => this.viewer?.reset(up)),
       el("button", { type: "button", name: "reset", click: () => this.viewer?.reset() }, "Reset view"),
-      el("span", { class: "faint hint" }, "drag: turn · right drag or two fingers: move · wheel or pinch: zoom"),
+      el("span", { class: "faint hint" }, "drag: turn · right drag or two fingers: move · wheel or pinch: zoom · keys: n, p, r, arrows"),
     ]);
   }
 
@@ -128,6 +133,7 @@ class ViewerSection {
 
   #step(i, by) {
     if (!this.viewer) return;
+    this.active = i;
     const pane = this.panes[i];
     const stops = this.#tour(i);
     if (stops.length === 0) return;
@@ -139,7 +145,16 @@ class ViewerSection {
     this.viewer.goTo(place, normal, surface.meanEdge);
   }
 
+  /** Keys act on the view that was used last. */
+  #key(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const steps = { n: 1, p: -1 };
+    if (event.key in steps) this.#step(this.active, steps[event.key]);
+    else if (event.key === "r") this.viewer?.reset();
+  }
+
   #picked(i, hit) {
+    this.active = i;
     if (hit) this.#select(i, elementAt(this.viewer.layersOf(i).surface, hit));
     else {
       this.viewer.choose([i], null);
