@@ -128,11 +128,11 @@ mod tests {
 
     #[test]
     fn the_edges_of_a_cube_are_sharp() {
-        let mesh = shapes::cube(4);
+        let mesh = shapes::cube(10);
         let surface = Reference::new(&mesh).unwrap();
         let options = FeatureOptions::default();
         let elements = Elements::new(&mesh, &Topology::new(&mesh), Some((&surface, &options)));
-        assert_eq!((elements.sharp_edges.len(), elements.boundary_edges.len()), (12 * 4, 0));
+        assert_eq!((elements.sharp_edges.len(), elements.boundary_edges.len()), (12 * 10, 0));
         assert_eq!(elements.vertices.len(), 8);
     }
 }

@@ -29,9 +29,14 @@ pub(super) struct Thinned {
 }
 
 impl Thinned {
-    /// Whether there is less than in the mesh.
-    pub(super) fn is_thinner(&self) -> bool {
-        self.face_ids.len() < self.face_of.len()
+    /// Vertex of the mesh of each shown vertex, where they are not numbered alike.
+    pub(super) fn renumbered_vertices(&self) -> Option<&[u32]> {
+        (self.vertex_ids.len() < self.vertex_of.len()).then_some(&self.vertex_ids)
+    }
+
+    /// Face of the mesh of each shown face, where they are not numbered alike.
+    pub(super) fn renumbered_faces(&self) -> Option<&[u32]> {
+        (self.face_ids.len() < self.face_of.len()).then_some(&self.face_ids)
     }
 
     /// The shown vertex that stands for a vertex.
@@ -45,21 +50,27 @@ impl Thinned {
     }
 }
 
-/// All of a mesh of at most `most` faces; else as fine as it can be with about that many.
+/// All of a mesh of at most `most` faces, less what cannot be drawn (vertices of no face, faces of
+/// fewer than three vertices); else as fine as it can be with about that many.
 pub(super) fn thin(mesh: &PolyMesh, elements: &Elements, most: usize) -> Thinned {
     if mesh.face_count() <= most {
-        return merged(mesh, (0..mesh.vertex_count() as u32).collect());
+        return merged(mesh, &all(mesh));
     }
     let kept = kept(mesh, elements);
     // A surface meets about as many cells as the square of how many there are along it.
     let mut cells = 2.0 * (most as f64).sqrt();
     loop {
-        let thinned = merged(mesh, clusters(mesh, &kept, cells));
+        let thinned = merged(mesh, &clusters(mesh, &kept, cells));
         if thinned.face_ids.len() <= most || cells < 2.0 {
             return thinned;
         }
         cells *= 0.8;
     }
+}
+
+/// Every vertex stands for itself.
+fn all(mesh: &PolyMesh) -> Vec<u32> {
+    (0..mesh.vertex_count() as u32).collect()
 }
 
 /// The vertices that must stay.
@@ -85,7 +96,7 @@ fn clusters(mesh: &PolyMesh, kept: &[bool], cells: f64) -> Vec<u32> {
 }
 
 /// The mesh with each vertex replaced by the one that stands for it.
-fn merged(mesh: &PolyMesh, stands_for: Vec<u32>) -> Thinned {
+fn merged(mesh: &PolyMesh, stands_for: &[u32]) -> Thinned {
     let mut thinned = Thinned {
         vertex_ids: Vec::new(),
         face_ids: Vec::new(),
@@ -94,7 +105,16 @@ fn merged(mesh: &PolyMesh, stands_for: Vec<u32>) -> Thinned {
         vertex_of: vec![NONE; mesh.vertex_count()],
         face_of: vec![NONE; mesh.face_count()],
     };
+    // Vertices keep their order, so that a mesh of which all is shown keeps its numbers.
+    let mut used = vec![false; mesh.vertex_count()];
+    for &v in mesh.corners() {
+        used[stands_for[v as usize] as usize] = true;
+    }
     let mut numbers = vec![NONE; mesh.vertex_count()];
+    for v in (0..mesh.vertex_count() as u32).filter(|&v| used[v as usize]) {
+        numbers[v as usize] = thinned.vertex_ids.len() as u32;
+        thinned.vertex_ids.push(v);
+    }
     for (f, face) in (0..).zip(mesh.faces()) {
         let mut corners: Vec<u32> = face.iter().map(|&v| stands_for[v as usize]).collect();
         corners.dedup();
@@ -104,19 +124,13 @@ fn merged(mesh: &PolyMesh, stands_for: Vec<u32>) -> Thinned {
         if corners.len() < 3 {
             continue;
         }
-        for v in corners {
-            if numbers[v as usize] == NONE {
-                numbers[v as usize] = thinned.vertex_ids.len() as u32;
-                thinned.vertex_ids.push(v);
-            }
-            thinned.corners.push(numbers[v as usize]);
-        }
+        thinned.corners.extend(corners.iter().map(|&v| numbers[v as usize]));
         thinned.face_of[f as usize] = thinned.face_ids.len() as u32;
         thinned.face_ids.push(f);
         thinned.offsets.push(thinned.corners.len() as u32);
     }
     for (of, by) in thinned.vertex_of.iter_mut().zip(stands_for) {
-        *of = numbers[by as usize];
+        *of = numbers[*by as usize];
     }
     thinned
 }
@@ -130,8 +144,21 @@ mod tests {
     fn small_meshes_are_shown_whole() {
         let mesh = shapes::cube(3);
         let shown = thin(&mesh, &Elements::default(), 54);
-        assert!(!shown.is_thinner());
-        assert_eq!((shown.offsets.as_slice(), shown.face_ids.len()), (mesh.offsets(), 54));
+        assert_eq!((shown.renumbered_vertices(), shown.renumbered_faces()), (None, None));
+        assert_eq!(
+            (shown.offsets.as_slice(), shown.corners.as_slice()),
+            (mesh.offsets(), mesh.corners())
+        );
+    }
+
+    #[test]
+    fn what_cannot_be_drawn_leaves_the_numbers_of_the_rest() {
+        let points = shapes::grid(2, 1).points().to_vec();
+        let mesh = PolyMesh::new(points, [vec![1, 4, 1], vec![1, 2, 5, 4]]).unwrap();
+        let shown = thin(&mesh, &Elements::default(), 10);
+        assert_eq!(shown.renumbered_vertices(), Some([1, 2, 4, 5].as_slice()));
+        assert_eq!(shown.renumbered_faces(), Some([1].as_slice()));
+        assert_eq!((shown.vertex(5), shown.vertex(0), shown.face(0)), (Some(3), None, None));
     }
 
     #[test]
@@ -139,7 +166,7 @@ mod tests {
         let mesh = shapes::cube(20);
         let elements = Elements::new(&mesh, &Topology::new(&mesh), None);
         let shown = thin(&mesh, &elements, 600);
-        assert!(shown.is_thinner() && (50..=600).contains(&shown.face_ids.len()));
+        assert!((50..=600).contains(&shown.renumbered_faces().map_or(0, <[u32]>::len)));
         for corner in &elements.vertices {
             let number = shown.vertex(corner.id).unwrap();
             assert_eq!(shown.vertex_ids[number as usize], corner.id);

@@ -93,7 +93,7 @@ class ViewerSection {
         options.map(([value, words]) => el("option", { value }, words))),
     ]);
     const colours = [["", "irregular elements"], ...this.data.fields.map((f) => [f.key, f.label])];
-    const thinned = this.data.meshes.some((mesh) => mesh.faceIds);
+    const thinned = this.data.meshes.some((mesh) => mesh.thinned);
     return el("div", { class: "toolbar", role: "toolbar" }, [
       choice("Colour", "colour", colours, (key) => this.#colour(key)),
       choice("Shading", "shading", [["flat", "flat"], ["smooth", "smooth"], ["wireframe", "wireframe"]],
@@ -109,9 +109,9 @@ class ViewerSection {
 
   /** Says where not everything is shown. */
   #notes() {
-    return this.data.meshes.filter((mesh) => mesh.faceIds).map((mesh) => el("p", { class: "notice" },
+    return this.data.meshes.filter((mesh) => mesh.thinned).map((mesh) => el("p", { class: "notice" },
       `${mesh.name} has ${shown(mesh.face_count)} faces. To stay usable, the view shows ` +
-      `${shown(mesh.faceIds.length)} faces of it, thinned out; irregular elements are all there, and ` +
+      `${shown(mesh.offsets.length - 1)} faces of it, thinned out; irregular elements are all there, and ` +
       "all numbers are those of the whole mesh."));
   }
 
