@@ -4,6 +4,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+#[cfg(unix)]
 use std::process::Command;
 
 /// Pictures of a page load quickly.
@@ -18,6 +19,7 @@ fn page(name: &str) -> String {
 }
 
 /// The lines of the shell blocks of a page.
+#[cfg(unix)]
 fn commands(text: &str) -> Vec<String> {
     let mut inside = false;
     let mut lines = Vec::new();
@@ -31,13 +33,12 @@ fn commands(text: &str) -> Vec<String> {
     lines
 }
 
-/// Runs the commands of a page, in order, in a folder with the sample.
-fn follow(name: &str) {
-    let folder = tempfile::tempdir().unwrap();
-    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
-    for (from, to) in [("bracket.obj", "remesh.obj"), ("bracket.ref.obj", "scan.obj")] {
-        fs::copy(assets.join(from), folder.path().join(to)).unwrap();
-    }
+/// The pages, in the order in which they are read.
+const PAGES: [&str; 4] = ["README.md", "first-remesh.md", "numbers.md", "presets.md"];
+
+/// Runs the commands of a page, in order.
+#[cfg(unix)]
+fn follow(name: &str, folder: &Path) {
     let program = Path::new(env!("CARGO_BIN_EXE_quadmend")).parent().unwrap();
     let mut path = vec![program.to_path_buf()];
     path.extend(std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default()));
@@ -47,7 +48,7 @@ fn follow(name: &str) {
     for line in &commands {
         let run = Command::new("sh")
             .args(["-c", line])
-            .current_dir(folder.path())
+            .current_dir(folder)
             .env("PATH", std::env::join_paths(&path).unwrap())
             .output()
             .unwrap();
@@ -55,7 +56,7 @@ fn follow(name: &str) {
         assert!(run.status.success(), "{name}: {line}: {told}");
     }
     for picture in pictures(&text) {
-        let made = folder.path().join(picture);
+        let made = folder.join(picture);
         assert!(made.is_file(), "{name} shows {picture}, which no command of it writes");
         if std::env::var_os("QUADMEND_WRITE_GUIDE").is_some() {
             fs::copy(made, guide().join("pictures").join(picture)).unwrap();
@@ -70,31 +71,16 @@ fn pictures(text: &str) -> Vec<&str> {
 
 #[test]
 #[cfg(unix)]
-fn the_commands_of_the_first_remesh_run() {
-    follow("first-remesh.md");
-}
-
-#[test]
-#[cfg(unix)]
-fn the_commands_about_numbers_run() {
-    follow("numbers.md");
-}
-
-#[test]
-#[cfg(unix)]
-fn the_commands_about_presets_run() {
-    follow("presets.md");
-}
-
-#[test]
-#[cfg(unix)]
-fn the_commands_of_the_first_page_run() {
-    follow("README.md");
+fn the_commands_run_page_after_page() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in PAGES {
+        follow(name, folder.path());
+    }
 }
 
 #[test]
 fn pictures_are_there_and_small_and_all_are_shown() {
-    let pages = ["README.md", "first-remesh.md", "numbers.md", "presets.md"].map(page);
+    let pages = PAGES.map(page);
     let shown: Vec<&str> = pages.iter().flat_map(|text| pictures(text)).collect();
     for entry in fs::read_dir(guide().join("pictures")).unwrap() {
         let entry = entry.unwrap();
