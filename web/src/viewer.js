@@ -89,7 +89,8 @@ export class Viewer {
     for (let i = 0; i < positions.length; i += 3) {
       arm.fromArray(positions, i).sub(this.controls.target);
       const wide = Math.abs(arm.dot(right)) / (slope * this.camera.aspect);
-      const high = Math.abs(arm.dot(up)) / slope;
+      // The heads of the views take some of their height.
+      const high = (1.12 * Math.abs(arm.dot(up))) / slope;
       distance = Math.max(distance, arm.dot(direction) + Math.max(wide, high));
     }
     return distance;
