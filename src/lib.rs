@@ -7,6 +7,7 @@
 //! read → mesh → lift → plan → edit → lower → smooth → measure → write.
 
 pub mod config;
+pub mod elements;
 pub mod io;
 pub mod knobs;
 pub mod mesh;
@@ -17,6 +18,8 @@ pub mod optimize;
 pub mod patch;
 pub mod pipeline;
 pub mod planner;
+pub mod render;
+pub mod report;
 pub mod script;
 pub mod smooth;
 pub mod sqrtcc;

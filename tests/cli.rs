@@ -116,11 +116,19 @@ fn clean_writes_the_mesh_and_tells_before_and_after() {
     let bench = Bench::new();
     let arguments =
         ["clean", SAMPLE, "--reference", REFERENCE, "-o", "out.obj", "--json", "r.json"];
-    let run = bench.run(arguments);
+    let shown =
+        ["--report", "r.html", "--pictures", "p", "--size", "160x120", "--heat", "distance"];
+    let run = bench.run(arguments.iter().chain(&shown));
     run.ends(0);
     assert!(run.out.contains("irregular elements E") && run.out.contains("better"), "{}", run.out);
     assert!(run.err.contains("mended: 1 doublet"), "{}", run.err);
-    assert_eq!(bench.files(), ["out.obj", "r.json"]);
+    assert_eq!(bench.files(), ["out.obj", "p", "r.html", "r.json"]);
+    for view in ["corner", "behind"] {
+        for (when, field) in ["before", "after"].iter().flat_map(|w| [(w, ""), (w, "-distance")]) {
+            assert!(bench.path(&format!("p/{when}-{view}{field}.png")).is_file());
+        }
+    }
+    assert!(bench.read("r.html").starts_with("<!doctype html>"));
     let report: serde_json::Value = serde_json::from_str(&bench.read("r.json")).unwrap();
     let elements =
         ["before", "after"].map(|m| number(&report, [m, "summary", "irregular_elements"]));
@@ -226,6 +234,10 @@ fn outputs_that_have_nowhere_to_go_are_refused_before_the_work() {
     bench.run(report).fails(2, &["nowhere/r.json"]);
     let twice = ["clean", "in.obj", "-o", "-", "--json", "-"];
     bench.run(twice).fails(2, &["two outputs"]);
+    let report = ["clean", "in.obj", "-o", "out.obj", "--report", "nowhere/r.html"];
+    bench.run(report).fails(2, &["nowhere/r.html"]);
+    bench.run(["clean", "in.obj", "-o", "out.obj", "--view", "top"]).fails(2, &["--pictures"]);
+    bench.run(["clean", "in.obj", "-o", "o.obj", "--pictures", "in.obj"]).fails(2, &["in.obj"]);
     bench.run(["clean", "-", "-r", "-", "-o", "out.obj"]).fails(2, &["standard input"]);
     assert_eq!(bench.files(), ["in.obj"]);
 }
@@ -276,6 +288,55 @@ fn compare_puts_meshes_side_by_side() {
 }
 
 #[test]
+fn compare_writes_csv_and_a_report() {
+    let bench = Bench::new();
+    bench.write("a,b.obj", &grid(4));
+    bench.write("b.obj", &grid(5));
+    let run = bench.run(["compare", "a,b.obj", "b.obj", "b.obj", "--csv", "--report", "r.html"]);
+    let rows: Vec<Vec<&str>> =
+        run.ends(0).out.lines().map(|line| line.rsplit(',').collect()).collect();
+    assert_eq!(rows.len(), 4);
+    assert_eq!(rows[2].len(), rows[0].len());
+    assert!(run.out.starts_with("file,V,E,F,") && run.out.contains("\n\"a,b.obj\",25,40,16,"));
+    assert!(bench.read("r.html").contains("three"));
+    let piped = bench.run(["compare", "a,b.obj", "b.obj", "--report", "-"]);
+    assert!(piped.ends(0).out.starts_with("<!doctype html>"));
+    bench.run(["compare", "b.obj", "b.obj", "--report", "b.obj"]).fails(2, &["--force"]);
+    bench.run(["compare", "b.obj", "b.obj", "--report", "no/r.html"]).fails(2, &["no/r.html"]);
+    bench.run(["compare", "b.obj", "b.obj", "--csv", "--json"]).fails(2, &["--json"]);
+}
+
+#[test]
+fn render_draws_meshes_side_by_side() {
+    let bench = Bench::new();
+    bench.write("a.obj", &grid(4));
+    let size = |name: &str| {
+        let bytes = fs::read(bench.path(name)).unwrap();
+        let side = |at: usize| u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap());
+        [side(16), side(20)]
+    };
+    let plain = ["render", "a.obj", "a.obj", "-o", "p.png", "--size", "200x100", "--no-legend"];
+    bench.run(plain.iter().chain(&["--view", "top", "--view", "-30,20", "--view", "left"])).ends(0);
+    assert_eq!(size("p.png"), [400, 300]);
+    bench.run(["render", "a.obj", "-o", "q.png", "-r", "a.obj", "--heat", "distance"]).ends(0);
+    assert_eq!(size("q.png")[0], 1200);
+    for (more, told) in [
+        (["--heat", "distance"], "--reference"),
+        (["--heat", "ugliness"], "planarity"),
+        (["--view", "iso"], "corner"),
+        (["--size", "big"], "1200x900"),
+        (["--size", "99999x99999"], "100 million"),
+        (["-o", "a.obj"], "--force"),
+        (["-o", "no/p.png"], "no/p.png"),
+    ] {
+        let output: &[&str] = if more[0] == "-o" { &[] } else { &["-o", "r.png"] };
+        bench.run(["render", "a.obj"].iter().chain(output).chain(&more)).fails(2, &[told]);
+    }
+    bench.run(["render", "none.obj", "-o", "r.png"]).fails(3, &["none.obj"]);
+    assert_eq!(bench.files(), ["a.obj", "p.png", "q.png"]);
+}
+
+#[test]
 fn plan_shows_the_edits_and_writes_nothing() {
     let bench = Bench::new();
     let table = bench.run(["plan", SAMPLE, "-r", REFERENCE]);
@@ -294,7 +355,9 @@ fn the_demo_leaves_meshes_and_reports() {
     let run = bench.run(["demo"]);
     run.ends(0);
     let folder = Path::new("quadmend-demo");
-    for name in ["input.obj", "reference.obj", "clean.obj", "report.json", "report.txt"] {
+    for name in
+        ["input.obj", "reference.obj", "clean.obj", "report.html", "report.json", "report.txt"]
+    {
         let path = folder.join(name);
         assert!(bench.path(path.to_str().unwrap()).is_file(), "{name} is missing");
         assert!(run.out.contains(path.to_str().unwrap()), "{name} is not told: {}", run.out);
@@ -394,7 +457,7 @@ fn help_teaches() {
     let bench = Bench::new();
     let help = bench.run(["--help"]);
     assert!(help.ends(0).out.contains("Exit codes:") && help.out.contains("Examples:"));
-    for command in ["clean", "metrics", "compare", "plan", "edit", "demo", "config"] {
+    for command in ["clean", "metrics", "compare", "plan", "edit", "render", "demo", "config"] {
         let help = bench.run([command, "--help"]);
         let teaches = help.out.contains("Examples:") || help.out.contains("Files:");
         assert!(help.code == 0 && teaches, "{command}: {}", help.out);

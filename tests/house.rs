@@ -10,9 +10,9 @@ const RANKS: &[(usize, &[&str])] = &[
     (2, &["sqrtcc", "surface", "io"]),
     (3, &["ops"]),
     (4, &["moves", "patch", "smooth", "metrics", "views"]),
-    (5, &["planner", "optimize"]),
+    (5, &["planner", "optimize", "elements"]),
     (6, &["config", "pipeline", "script"]),
-    (7, &["tune", "batch", "report"]),
+    (7, &["tune", "batch", "render", "report"]),
     (8, &["cli", "viewer", "main"]),
 ];
 

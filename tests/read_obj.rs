@@ -44,7 +44,7 @@ fn groups_and_materials_do_not_tear_the_mesh() {
     let text = square_and(
         "v 2 0 0\nv 2 1 0\nmtllib a.mtl\no left\ng one\nf 1 2 3 4\nusemtl red\ng two\nf 2 5 6 3\n",
     );
-    let Loaded { mesh, warnings } = load(&text);
+    let Loaded { mesh, warnings, .. } = load(&text);
     assert_eq!(mesh.vertex_count(), 6);
     assert_eq!(mesh.face(1), [1, 4, 5, 2]);
     assert_eq!(mesh.group_names(), ["", "one", "two"]);

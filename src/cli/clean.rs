@@ -6,19 +6,23 @@ use clap::Args;
 use quadmend::io;
 use quadmend::mesh::MendPolicy;
 use quadmend::pipeline::{Report, clean};
+use quadmend::report::Timing;
 use quadmend::watch::{Phase, Watch};
 
 use super::Exit;
+use super::aftermath::Aftermath;
 use super::failure::Failure;
 use super::limits::{self, Limit};
+use super::look::Look;
 use super::paths::{self, is_stream};
 use super::settings::{Running, Settings};
-use super::{output, summary};
+use super::{output, pictures, summary};
 
 const EXAMPLES: &str = "\
 Examples:
   quadmend clean remesh.obj --reference scan.obj -o clean.obj
   quadmend clean remesh.obj -o clean.obj --preset balanced --set smooth.iterations=100
+  quadmend clean remesh.obj -o clean.obj --report report.html --pictures pictures
   quadmend clean - -o - < remesh.obj > clean.obj
   quadmend clean remesh.obj -o clean.obj --json report.json --fail-if 't_junctions>0'
 
@@ -52,6 +56,17 @@ pub(super) struct Clean {
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 
+    /// Write a report as a single HTML file that opens offline: both meshes in 3D, heat maps, every
+    /// edit, metrics before and after [default: none]
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
+
+    /// Draw the mesh before and after from each view into a folder, which is made if it is not
+    /// there: before-VIEW.png and after-VIEW.png, and with --heat before-VIEW-FIELD.png and
+    /// after-VIEW-FIELD.png [default: none; views: corner and behind]
+    #[arg(long, value_name = "DIR")]
+    pictures: Option<PathBuf>,
+
     /// Allow an output to replace an input
     #[arg(long)]
     force: bool,
@@ -61,6 +76,9 @@ pub(super) struct Clean {
     /// `quadmend metrics --json`; may be repeated [default: no limit]
     #[arg(long, value_name = "LIMIT")]
     fail_if: Vec<Limit>,
+
+    #[command(flatten)]
+    look: Look,
 
     #[command(flatten)]
     settings: Settings,
@@ -75,26 +93,56 @@ impl Clean {
         let config = self.settings.load()?;
         let progress = self.running.start()?;
         progress.progress(Phase::Read, 0, 1, None);
-        let mesh = progress.read(&self.input)?;
-        let reference = self.reference.as_deref().map(|path| progress.read(path)).transpose()?;
+        let input = progress.load(&self.input)?;
+        let reference = self.reference.as_deref().map(|path| progress.load(path)).transpose()?;
         let policy = if self.strict { MendPolicy::Strict } else { MendPolicy::Mend };
-        let cleaned = clean(mesh, reference.as_ref(), policy, &config, &progress)
+        let surface = reference.as_ref().map(|loaded| &loaded.mesh);
+        let cleaned = clean(input.mesh.clone(), surface, policy, &config, &progress)
             .map_err(|e| Failure::of_file(&paths::shown(&self.input), e))?;
         progress.progress(Phase::Write, 0, 1, None);
         io::write(&self.output, &cleaned.mesh)?;
         if let Some(path) = &self.json {
             output::file(path, &output::json(&cleaned.report)?)?;
         }
+        if self.pictures.is_some() || self.report.is_some() {
+            let shown = Aftermath::new((&input, reference.as_ref()), &cleaned, &config);
+            self.show(&shown, progress.timings())?;
+        }
         progress.finish();
         self.tell(&cleaned.report)?;
         Ok(limits::check(&self.fail_if, &cleaned.report.after, summary::exit(&cleaned.report)))
     }
 
+    /// Pictures and the report for people.
+    fn show(&self, shown: &Aftermath, timings: Vec<Timing>) -> Result<(), Failure> {
+        let names = [&self.input, &self.output].map(|path| paths::short_name(path));
+        if let Some(folder) = &self.pictures {
+            pictures::write(folder, &self.look, &shown.pair(&names))?;
+        }
+        if let Some(path) = &self.report {
+            let files = [&self.input, &self.output].map(|path| paths::shown(path));
+            let reference = self.reference.as_deref().map(paths::shown);
+            output::file(path, &shown.html((names, files, reference), timings))?;
+        }
+        Ok(())
+    }
+
+    /// Everything that can be found wrong before the work is found before the work.
     fn check_paths(&self) -> Result<(), Failure> {
         let meshes: Vec<&Path> =
             std::iter::once(&*self.input).chain(self.reference.as_deref()).collect();
-        let outputs = (&*self.output, self.json.as_deref());
-        paths::check(&meshes, self.settings.config.as_deref(), outputs, self.force)
+        let others = self.other_outputs();
+        let outputs = (&*self.output, others.as_slice());
+        paths::check(&meshes, self.settings.config.as_deref(), outputs, self.force)?;
+        if self.pictures.is_none() && !self.look.is_plain() {
+            return Err(Failure::usage("options of pictures need a folder: --pictures DIR"));
+        }
+        self.pictures.as_deref().map_or(Ok(()), output::folder)
+    }
+
+    /// Where reports go.
+    fn other_outputs(&self) -> Vec<&Path> {
+        [self.json.as_deref(), self.report.as_deref()].into_iter().flatten().collect()
     }
 
     fn tell(&self, report: &Report) -> Result<(), Failure> {
@@ -103,7 +151,7 @@ impl Clean {
         }
         output::note(summary::work(report).trim_end());
         let table = summary::table(report);
-        let taken = is_stream(&self.output) || self.json.as_deref().is_some_and(is_stream);
+        let taken = is_stream(&self.output) || self.other_outputs().into_iter().any(is_stream);
         output::table(&table, taken)
     }
 }

@@ -116,7 +116,8 @@ impl Convert {
         }
         let meshes: Vec<&Path> =
             std::iter::once(&*self.input).chain(self.reference.as_deref()).collect();
-        let outputs = (&*self.output, self.json.as_deref());
+        let json = self.json.as_deref();
+        let outputs = (&*self.output, json.as_slice());
         paths::check(&meshes, self.settings.config.as_deref(), outputs, self.force)
     }
 

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use quadmend::config::Config;
-use quadmend::io::{Format, Obj, write};
+use quadmend::io::{Format, Loaded, Obj, write};
 use quadmend::mesh::{MendPolicy, PolyMesh};
 use quadmend::pipeline::{Cleaned, clean};
 
+use super::aftermath::Aftermath;
 use super::failure::Failure;
 use super::settings::Running;
 use super::{Exit, output, summary};
@@ -22,6 +23,7 @@ Files:
   input.obj       the sample: a bracket as Instant Meshes leaves it
   reference.obj   the surface that it was made from
   clean.obj       the cleaned mesh
+  report.html     both meshes in 3D, heat maps, every edit: open it in a browser
   report.json     metrics before and after, mends, every edit
   report.txt      the table that is also shown";
 
@@ -39,17 +41,18 @@ pub(super) struct Demo {
 
 impl Demo {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
-        std::fs::create_dir_all(&self.output).map_err(|e| {
-            let folder = self.output.display();
-            Failure::usage(format!("{folder}: the folder cannot be made ({e}); give another"))
-        })?;
+        output::folder(&self.output)?;
         let progress = self.running.start()?;
         let (mesh, reference) = (embedded(SAMPLE)?, embedded(REFERENCE)?);
-        let (input, surface) = (mesh.clone(), Some(reference.clone()));
-        let cleaned =
-            clean(input, surface.as_ref(), MendPolicy::Mend, &Config::default(), &progress)?;
+        let config = Config::default();
+        let surface = Some(&reference.mesh);
+        let cleaned = clean(mesh.mesh.clone(), surface, MendPolicy::Mend, &config, &progress)?;
+        self.write(&mesh.mesh, &reference.mesh, &cleaned)?;
+        let shown = Aftermath::new((&mesh, Some(&reference)), &cleaned, &config);
+        let names = ["input.obj", "clean.obj"].map(str::to_owned);
+        let files = (names.clone(), names, Some("reference.obj".to_owned()));
+        output::file(&self.file("report.html"), &shown.html(files, progress.timings()))?;
         progress.finish();
-        self.write(&mesh, &reference, &cleaned)?;
         if !self.running.quiet {
             output::data(&self.tell(&cleaned))?;
         }
@@ -72,11 +75,12 @@ impl Demo {
     fn tell(&self, cleaned: &Cleaned) -> String {
         let files = ["input", "clean", "reference"].map(|f| self.shown(&format!("{f}.obj")));
         let [input, clean, reference] = files;
-        let (txt, json) = (self.shown("report.txt"), self.shown("report.json"));
+        let reports = ["html", "txt", "json"].map(|f| self.shown(&format!("report.{f}")));
         format!(
             "{}\nbefore      {input}\nafter       {clean}\nreference   {reference}\n\
-             report      {txt}, {json}\n",
-            summary::text(&cleaned.report)
+             report      {}\n",
+            summary::text(&cleaned.report),
+            reports.join(", ")
         )
     }
 
@@ -89,6 +93,6 @@ impl Demo {
     }
 }
 
-fn embedded(bytes: &[u8]) -> Result<PolyMesh, Failure> {
-    Ok(Obj.read(bytes, "embedded sample")?.mesh)
+fn embedded(bytes: &[u8]) -> Result<Loaded, Failure> {
+    Ok(Obj.read(bytes, "embedded sample")?)
 }

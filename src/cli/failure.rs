@@ -7,6 +7,7 @@ use quadmend::config::ConfigError;
 use quadmend::io::{ReadError, WriteError};
 use quadmend::metrics::MetricsError;
 use quadmend::pipeline::CleanError;
+use quadmend::render::PictureError;
 use quadmend::script::ScriptError;
 
 use super::Exit;
@@ -84,6 +85,12 @@ impl From<ConfigError> for Failure {
 
 impl From<WriteError> for Failure {
     fn from(error: WriteError) -> Self {
+        Self { exit: Exit::Usage, error: error.into() }
+    }
+}
+
+impl From<PictureError> for Failure {
+    fn from(error: PictureError) -> Self {
         Self { exit: Exit::Usage, error: error.into() }
     }
 }

@@ -43,7 +43,7 @@ impl MetricsCommand {
         let measured = self.measuring.measure(&[&self.mesh])?;
         let name = short_name(&self.mesh);
         let mut exit = Exit::Done;
-        for metrics in &measured {
+        for metrics in measured.meshes.iter().map(|m| &m.metrics) {
             let json = self.measuring.json;
             output::data(&if json { output::json(metrics)? } else { table(&[(&name, metrics)]) })?;
             exit = limits::check(&self.fail_if, metrics, exit);

@@ -5,6 +5,7 @@
 //!
 //! *Invariant:* this is the only place that prints, looks at the clock or at the terminal.
 
+mod aftermath;
 mod clean;
 mod compare;
 mod config;
@@ -14,13 +15,16 @@ mod edit;
 mod failure;
 mod generate;
 mod limits;
+mod look;
 mod measuring;
 mod metrics;
 mod optimize;
 mod output;
 mod paths;
+mod pictures;
 mod plan;
 mod progress;
+mod render;
 mod settings;
 mod summary;
 
@@ -63,6 +67,7 @@ Examples:
   quadmend metrics remesh.obj                               what is wrong with it?
   quadmend compare remesh.obj clean.obj --reference scan.obj
   quadmend edit remesh.obj --script edits.toml -o edited.obj   make chosen edits
+  quadmend render remesh.obj clean.obj -o both.png          how does it look?
   quadmend config explain smooth                            what can be tuned?";
 
 /// Cleans the connectivity of quad-dominant meshes: irregular vertices and faces and T-junctions
@@ -84,6 +89,7 @@ enum Command {
     Edit(edit::Edit),
     Convert(convert::Convert),
     Optimize(optimize::Optimize),
+    Render(render::Render),
     Demo(demo::Demo),
     Config(config::ConfigCommand),
     Generate(generate::Generate),
@@ -104,6 +110,7 @@ fn run(command: &Command) -> Result<Exit, Failure> {
         Command::Edit(command) => command.run(),
         Command::Convert(command) => command.run(),
         Command::Optimize(command) => command.run(),
+        Command::Render(command) => command.run(),
         Command::Demo(command) => command.run(),
         Command::Config(command) => command.run(),
         Command::Generate(command) => command.run(),

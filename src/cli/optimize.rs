@@ -101,7 +101,8 @@ impl Optimize {
     fn check_paths(&self) -> Result<(), Failure> {
         let meshes: Vec<&Path> =
             std::iter::once(&*self.input).chain(self.reference.as_deref()).collect();
-        let outputs = (&*self.output, self.json.as_deref());
+        let json = self.json.as_deref();
+        let outputs = (&*self.output, json.as_slice());
         paths::check(&meshes, self.settings.config.as_deref(), outputs, self.force)
     }
 

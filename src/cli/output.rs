@@ -4,6 +4,7 @@ use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 
 use quadmend::io::{WriteError, write_atomically};
+use quadmend::render::Image;
 use serde::Serialize;
 
 use super::failure::Failure;
@@ -48,4 +49,17 @@ pub(super) fn table(text: &str, taken: bool) -> Result<(), Failure> {
     }
     note(text.trim_end());
     Ok(())
+}
+
+/// Writes a picture as PNG, whole or not at all; `-` is standard output.
+pub(super) fn picture(path: &Path, image: &Image) -> Result<(), Failure> {
+    Ok(write_atomically(path, |out| image.write_png(out))?)
+}
+
+/// Makes a folder if it is not there.
+pub(super) fn folder(path: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(path).map_err(|e| {
+        let shown = path.display();
+        Failure::usage(format!("{shown}: the folder cannot be made ({e}); give another"))
+    })
 }

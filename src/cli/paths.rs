@@ -11,20 +11,20 @@ pub(super) fn is_stream(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Finds what is wrong with the paths of a command that makes a mesh and perhaps a report, before
+/// Finds what is wrong with the paths of a command that makes a mesh and perhaps reports, before
 /// the work is done.
 pub(super) fn check(
     meshes: &[&Path],
     config: Option<&Path>,
-    (output, json): (&Path, Option<&Path>),
+    (output, others): (&Path, &[&Path]),
     force: bool,
 ) -> Result<(), Failure> {
     read_stdin_once(meshes)?;
     let inputs: Vec<&Path> = meshes.iter().copied().chain(config).collect();
-    let outputs: Vec<&Path> = std::iter::once(output).chain(json).collect();
+    let outputs: Vec<&Path> = std::iter::once(output).chain(others.iter().copied()).collect();
     keep_apart(&inputs, &outputs, force)?;
     io::check_output(output)?;
-    Ok(json.map_or(Ok(()), io::check_place)?)
+    Ok(others.iter().try_for_each(|path| io::check_place(path))?)
 }
 
 /// Refuses to read standard input for two meshes.
@@ -69,4 +69,11 @@ pub(super) fn shown(path: &Path) -> String {
 /// A short name for tables: the file name.
 pub(super) fn short_name(path: &Path) -> String {
     path.file_name().map_or_else(|| path.display().to_string(), |n| n.display().to_string())
+}
+
+/// File names, or whole paths where file names would not tell the files apart.
+pub(super) fn names<F: AsRef<Path>>(files: &[F]) -> Vec<String> {
+    let short: Vec<String> = files.iter().map(|f| short_name(f.as_ref())).collect();
+    let unique = short.iter().enumerate().all(|(i, name)| !short[..i].contains(name));
+    if unique { short } else { files.iter().map(|f| f.as_ref().display().to_string()).collect() }
 }

@@ -8,6 +8,7 @@ use quadmend::mesh::MendPolicy;
 use quadmend::pipeline::plan;
 use quadmend::planner::edit::Edit;
 use quadmend::planner::schedule::EditRecord;
+use quadmend::report;
 use quadmend::watch::{Phase, Watch};
 
 use super::failure::Failure;
@@ -70,7 +71,7 @@ impl Plan {
 
 fn table(edits: &[EditRecord]) -> String {
     let mut text = format!(
-        "{:>5} {:>5}  {:<26} {:>7} {:>8} {:>8}  place\n",
+        "{:>5} {:>5}  {:<36} {:>7} {:>8} {:>8}  place\n",
         "edit", "round", "kind", "removed", "cost", "angle"
     );
     for (number, record) in (1..).zip(edits) {
@@ -78,9 +79,9 @@ fn table(edits: &[EditRecord]) -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "{number:>5} {:>5}  {:<26} {:>7} {:>8.2} {:>8.1}  {x:.4} {y:.4} {z:.4}{}",
+            "{number:>5} {:>5}  {:<36} {:>7} {:>8.2} {:>8.1}  {x:.4} {y:.4} {z:.4}{}",
             record.round,
-            kind(&record.edit),
+            report::words(&record.edit),
             record.gain,
             record.cost,
             record.angle_growth_deg,
@@ -88,17 +89,6 @@ fn table(edits: &[EditRecord]) -> String {
         );
     }
     text
-}
-
-fn kind(edit: &Edit) -> String {
-    match edit {
-        Edit::Local { ops } => format!("local, {} op", ops.len()),
-        Edit::Walk { cancellation, steps, .. } => {
-            format!("{cancellation:?} cancellation, {} steps", steps.len())
-        }
-        Edit::TypeChange { .. } => "type change".to_owned(),
-        Edit::Refill(_) => "refill".to_owned(),
-    }
 }
 
 fn terms(edit: &Edit) -> String {

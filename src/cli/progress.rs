@@ -7,8 +7,9 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use quadmend::io;
+use quadmend::io::{self, Loaded};
 use quadmend::mesh::PolyMesh;
+use quadmend::report::Timing;
 use quadmend::watch::{Phase, Watch};
 
 use super::failure::Failure;
@@ -77,11 +78,27 @@ impl Progress {
 
     /// Reads a mesh and says what was left out.
     pub(super) fn read(&self, path: &Path) -> Result<PolyMesh, Failure> {
+        Ok(self.load(path)?.mesh)
+    }
+
+    /// The same, with what else is known about the file.
+    pub(super) fn load(&self, path: &Path) -> Result<Loaded, Failure> {
         let loaded = io::read(path)?;
         for warning in &loaded.warnings {
             self.tell(&format!("warning: {warning}"));
         }
-        Ok(loaded.mesh)
+        Ok(loaded)
+    }
+
+    /// How long each phase has taken so far.
+    pub(super) fn timings(&self) -> Vec<Timing> {
+        let mut state = self.lock();
+        state.count_time();
+        let one = |(&phase, spent): (&Phase, &Duration)| Timing {
+            phase: words(phase),
+            seconds: spent.as_secs_f64(),
+        };
+        state.spent.iter().map(one).collect()
     }
 
     /// Ends the display; if verbose, tells how long each phase took.

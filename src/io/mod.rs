@@ -57,6 +57,8 @@ pub struct Loaded {
     pub mesh: PolyMesh,
     /// What the person who gave the file should know.
     pub warnings: Vec<Warning>,
+    /// SHA-256 of the file, in hexadecimal digits.
+    pub sha256: String,
 }
 
 /// Something that was read without error, but not kept.
@@ -315,4 +317,15 @@ fn is_standard_stream(path: &Path) -> bool {
 
 fn display_name(path: &Path, stream: &str) -> String {
     if is_standard_stream(path) { stream.to_owned() } else { path.display().to_string() }
+}
+
+/// SHA-256 of `bytes`, in hexadecimal digits.
+fn fingerprint(bytes: &[u8]) -> String {
+    use sha2::{Digest, Sha256};
+    use std::fmt::Write;
+    Sha256::digest(bytes).iter().fold(String::new(), |mut text, byte| {
+        // Writing to a string cannot fail.
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
 }

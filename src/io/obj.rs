@@ -16,7 +16,7 @@ use tobj::LoadOptions;
 
 use self::feed::{Feed, bad_number, excerpt};
 use self::statements::Statements;
-use super::{Format, Loaded, ReadError, ReadFault, Warning};
+use super::{Format, Loaded, ReadError, ReadFault, Warning, fingerprint};
 use crate::mesh::{MeshError, Point, PolyMesh};
 
 /// Coordinates beyond this would overflow where lengths are squared and multiplied.
@@ -47,7 +47,7 @@ impl Format for Obj {
         let model = load(&mut feed).map_err(at)?;
         let mesh = build(bytes, &mut feed, model).map_err(at)?;
         let warnings = dropped_warning(&feed, file);
-        Ok(Loaded { mesh, warnings })
+        Ok(Loaded { mesh, warnings, sha256: fingerprint(bytes) })
     }
 
     fn write(&self, mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {

@@ -46,7 +46,7 @@ pub(super) fn reflex_corner_faces(shape: &Shape) -> usize {
 }
 
 /// Mean distance from the mean; an undefined angle counts as a right one.
-fn deviation_from_mean(angles: &[f64]) -> f64 {
+pub(super) fn deviation_from_mean(angles: &[f64]) -> f64 {
     let defined = |a: &f64| if a.is_nan() { 90.0 } else { *a };
     let count = angles.len().max(1) as f64;
     let mean = angles.iter().map(defined).sum::<f64>() / count;

@@ -5,6 +5,7 @@
 use super::shape::Shape;
 use super::stats::{mean, min, percentile, share};
 use serde::Serialize;
+use std::ops::Range;
 
 /// Distribution of the scaled Jacobian over quads.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -27,12 +28,7 @@ pub struct ScaledJacobian {
 impl ScaledJacobian {
     /// Measures; `None` without quads. O(n) for n corners.
     pub(super) fn new(shape: &Shape) -> Option<Self> {
-        // A corner at an edge of no length is as bad as an inverted one.
-        let defined = |j: f64| if j.is_nan() { -1.0 } else { j };
-        let worst = |quad: std::ops::Range<usize>| {
-            shape.jacobians[quad].iter().fold(f64::INFINITY, |w, &j| w.min(defined(j)))
-        };
-        let mut values: Vec<f64> = shape.quads().map(worst).collect();
+        let mut values: Vec<f64> = shape.quads().map(|quad| of_quad(shape, quad)).collect();
         let below = |limit: f64| values.iter().filter(|&&j| j < limit).count();
         let (below_0, below_0_3) = (below(0.0), below(0.3));
         Some(Self {
@@ -44,4 +40,11 @@ impl ScaledJacobian {
             p1: percentile(&mut values, 1.0)?,
         })
     }
+}
+
+/// The scaled Jacobian of one quad.
+pub(super) fn of_quad(shape: &Shape, quad: Range<usize>) -> f64 {
+    // A corner at an edge of no length is as bad as an inverted one.
+    let defined = |j: f64| if j.is_nan() { -1.0 } else { j };
+    shape.jacobians[quad].iter().fold(f64::INFINITY, |w, &j| w.min(defined(j)))
 }

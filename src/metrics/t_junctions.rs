@@ -52,7 +52,32 @@ impl TJunctions {
 /// d ≥ 5 with room for d − 4 of them. O(k √k) for k candidates in practice.
 #[must_use]
 pub fn matched_t_junctions(mesh: &PolyMesh, topology: &Topology) -> usize {
-    Matching::new(mesh, topology).maximum()
+    t_junctions(mesh, topology).len()
+}
+
+/// A vertex that hangs in the side of a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct TJunction {
+    /// The vertex, of valence 3.
+    pub vertex: u32,
+    /// The face, of degree 5 or more.
+    pub face: u32,
+}
+
+/// The T-junctions that [`matched_t_junctions`] counts, by vertex. Where there are several maximum
+/// matchings, which one it is depends on the mesh only.
+#[must_use]
+pub fn t_junctions(mesh: &PolyMesh, topology: &Topology) -> Vec<TJunction> {
+    let matching = Matching::new(mesh, topology).maximum();
+    let seated = matching.fans.iter().zip(&matching.room_of).filter(|&(_, &room)| room != NONE);
+    let mut found: Vec<TJunction> = seated
+        .map(|(&fan, &room)| TJunction {
+            vertex: topology.fan_vertex[fan as usize],
+            face: matching.face_of(room),
+        })
+        .collect();
+    found.sort_unstable_by_key(|t| (t.vertex, t.face));
+    found
 }
 
 fn is_interior_v3(topology: &Topology, corner: usize) -> bool {
@@ -64,6 +89,8 @@ fn is_interior_v3(topology: &Topology, corner: usize) -> bool {
 ///
 /// *Invariant:* `room_of[v]` is a room of a face of `v`, and `guest[room_of[v]] == v`.
 struct Matching {
+    /// The fan of each vertex.
+    fans: Vec<u32>,
     /// Faces of each vertex: vertex `v` has `faces[starts[v]..starts[v + 1]]`.
     starts: Vec<u32>,
     faces: Vec<u32>,
@@ -87,8 +114,9 @@ impl Matching {
             .collect();
         pairs.sort_unstable();
         pairs.dedup();
-        let mut starts = vec![0];
+        let (mut fans, mut starts) = (Vec::new(), vec![0]);
         for group in pairs.chunk_by(|a, b| a.0 == b.0) {
+            fans.push(group[0].0);
             starts.push(starts[starts.len() - 1] + group.len() as u32);
         }
         let mut rooms = vec![0];
@@ -97,12 +125,13 @@ impl Matching {
         }
         let guest = vec![NONE; rooms[rooms.len() - 1] as usize];
         let room_of = vec![NONE; starts.len() - 1];
-        Self { starts, faces: pairs.into_iter().map(|p| p.1).collect(), rooms, guest, room_of }
+        let faces = pairs.into_iter().map(|p| p.1).collect();
+        Self { fans, starts, faces, rooms, guest, room_of }
     }
 
     /// Augments until a whole pass finds nothing. A face visited in a pass is not visited again in
     /// it: it either led to no free room, or its path is taken and the next pass looks afresh.
-    fn maximum(mut self) -> usize {
+    fn maximum(mut self) -> Self {
         let mut visited = vec![0_u32; self.rooms.len()];
         for pass in 1.. {
             let mut found = false;
@@ -115,7 +144,7 @@ impl Matching {
                 break;
             }
         }
-        self.room_of.iter().filter(|&&room| room != NONE).count()
+        self
     }
 
     /// Breadth-first search for a free room, moving guests on the way; whether there was one.
@@ -139,6 +168,11 @@ impl Matching {
             at += 1;
         }
         false
+    }
+
+    /// The face that has a room.
+    fn face_of(&self, room: u32) -> u32 {
+        self.rooms.partition_point(|&first| first <= room) as u32 - 1
     }
 
     fn rooms_of(&self, face: usize) -> Range<usize> {
@@ -177,7 +211,9 @@ mod tests {
         let rooms = sums(&mut room.iter().copied());
         let guest = vec![NONE; rooms[room.len()] as usize];
         let room_of = vec![NONE; wishes.len()];
-        Matching { starts, faces: wishes.concat(), rooms, guest, room_of }.maximum()
+        let fans = (0..wishes.len() as u32).collect();
+        let matching = Matching { fans, starts, faces: wishes.concat(), rooms, guest, room_of };
+        matching.maximum().room_of.iter().filter(|&&room| room != NONE).count()
     }
 
     #[test]

@@ -6,22 +6,50 @@ use super::registry::{Better, Kind, METRICS, Metric};
 /// One line: the label, the values, and for two meshes the change.
 type Row = Vec<String>;
 
+/// A metric of several meshes side by side, as it is shown.
+#[derive(Debug, Clone)]
+pub struct Line {
+    /// The metric.
+    pub metric: &'static Metric,
+    /// Its value for each mesh; `-` where there is none.
+    pub values: Vec<String>,
+    /// Of exactly two meshes: how far and which way the second differs from the first.
+    pub change: Option<Change>,
+    /// The meshes with the best value, where values differ and one is better than another.
+    pub best: Vec<usize>,
+}
+
+/// A change between two meshes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Change {
+    /// `=`, or an arrow with the extent; empty for flags.
+    pub extent: String,
+    /// `better`, `worse`, or nothing where neither is.
+    pub judgement: &'static str,
+}
+
+/// The lines that are worth reading: unmeasured numbers and faults that no mesh has are left out.
+#[must_use]
+pub fn lines(meshes: &[&Metrics]) -> Vec<Line> {
+    let of = |metric: &'static Metric| {
+        let values: Vec<Option<f64>> = meshes.iter().map(|m| (metric.value)(m)).collect();
+        is_worth_a_line(metric, &values).then(|| line(metric, &values))
+    };
+    METRICS.iter().filter_map(of).collect()
+}
+
 /// Renders meshes side by side under their names. Two are read as before and after: a last column
 /// says how much each number changed and whether that is better. Ends with a line break.
 #[must_use]
 pub fn table(meshes: &[(&str, &Metrics)]) -> String {
     let mut rows: Vec<Row> = vec![header(meshes)];
     let mut group = "";
-    for metric in METRICS {
-        let values: Vec<Option<f64>> = meshes.iter().map(|(_, m)| (metric.value)(m)).collect();
-        if !is_worth_a_line(metric, &values) {
-            continue;
-        }
-        if metric.group != group {
-            group = metric.group;
+    for line in lines(&meshes.iter().map(|&(_, m)| m).collect::<Vec<_>>()) {
+        if line.metric.group != group {
+            group = line.metric.group;
             rows.push(vec![group.to_owned()]);
         }
-        rows.push(row(metric, &values));
+        rows.push(row(line));
     }
     layout(&rows, meshes.len())
 }
@@ -35,19 +63,46 @@ fn header(meshes: &[(&str, &Metrics)]) -> Row {
     header
 }
 
-/// Unmeasured numbers and faults that no mesh has are left out.
 fn is_worth_a_line(metric: &Metric, values: &[Option<f64>]) -> bool {
     values.iter().flatten().any(|&v| !metric.quiet || v != 0.0)
 }
 
-fn row(metric: &Metric, values: &[Option<f64>]) -> Row {
+fn row(line: Line) -> Row {
+    let metric = line.metric;
     let unit = if metric.unit.is_empty() { String::new() } else { format!(" [{}]", metric.unit) };
     let mut row = vec![format!("  {}{unit}", metric.label)];
-    row.extend(values.iter().map(|&v| v.map_or_else(|| "-".to_owned(), |v| show(metric.kind, v))));
-    if let &[Some(before), Some(after)] = values {
-        row.push(change(metric, before, after));
-    }
+    row.extend(line.values);
+    row.extend(line.change.map(|change| change.words()));
     row
+}
+
+fn line(metric: &'static Metric, values: &[Option<f64>]) -> Line {
+    let change = match *values {
+        [Some(before), Some(after)] => Some(change(metric, before, after)),
+        _ => None,
+    };
+    let shown = |&v: &Option<f64>| v.map_or_else(|| "-".to_owned(), |v| show(metric.kind, v));
+    let values_shown: Vec<String> = values.iter().map(shown).collect();
+    Line { metric, best: best(metric, values, &values_shown), values: values_shown, change }
+}
+
+/// Numbers of the meshes that share the best value, as it is shown; none if all do.
+fn best(metric: &Metric, values: &[Option<f64>], shown: &[String]) -> Vec<usize> {
+    let worth = |v: f64| if metric.better == Better::Lower { -v } else { v };
+    let measured = (0..values.len()).filter_map(|i| Some((i, worth(values[i]?))));
+    let winner = measured.max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
+    let Some((winner, _)) = winner.filter(|_| metric.better != Better::Neither) else {
+        return Vec::new();
+    };
+    let sharing: Vec<usize> = (0..shown.len()).filter(|&i| shown[i] == shown[winner]).collect();
+    if sharing.len() == shown.len() { Vec::new() } else { sharing }
+}
+
+impl Change {
+    fn words(&self) -> String {
+        let gap = if self.extent.is_empty() { "" } else { "  " };
+        format!("{}{gap}{}", self.extent, self.judgement).trim_end().to_owned()
+    }
 }
 
 fn show(kind: Kind, value: f64) -> String {
@@ -74,11 +129,11 @@ fn significant(value: f64) -> String {
     format!("{value:.digits$}")
 }
 
-/// Which way and how far, and whether that is an improvement: `↓ 85.1 %  better`.
-fn change(metric: &Metric, before: f64, after: f64) -> String {
+/// Which way and how far, and whether that is an improvement: `↓ 85.1 %` and `better`.
+fn change(metric: &Metric, before: f64, after: f64) -> Change {
     // What is equal as it is shown is equal to the reader.
     if show(metric.kind, before) == show(metric.kind, after) {
-        return "=".to_owned();
+        return Change { extent: "=".to_owned(), judgement: "" };
     }
     let (arrow, rises) = if after > before { ("↑", true) } else { ("↓", false) };
     let judgement = match metric.better {
@@ -86,10 +141,11 @@ fn change(metric: &Metric, before: f64, after: f64) -> String {
         better if rises == (better == Better::Higher) => "better",
         _ => "worse",
     };
-    if metric.kind == Kind::Flag {
-        return judgement.to_owned();
-    }
-    format!("{arrow} {}  {judgement}", extent(metric.kind, before, after)).trim_end().to_owned()
+    let extent = match metric.kind {
+        Kind::Flag => String::new(),
+        kind => format!("{arrow} {}", extent(kind, before, after)),
+    };
+    Change { extent, judgement }
 }
 
 /// Relative where there is something to relate to, else the difference.
@@ -129,7 +185,7 @@ mod tests {
     use super::*;
 
     fn changed(key: &str, before: f64, after: f64) -> String {
-        change(metric(key).expect("the metric exists"), before, after)
+        change(metric(key).expect("the metric exists"), before, after).words()
     }
 
     #[test]
@@ -142,6 +198,17 @@ mod tests {
         assert_eq!(changed("flipped_faces", 0.0, 3.0), "↑ 3  worse");
         assert_eq!(changed("rms", 1e-17, 0.000_3), "↑ 0.03000 %  worse");
         assert_eq!(changed("fig10_mean", 2.0, 2.000_000_1), "=");
+    }
+
+    #[test]
+    fn the_best_are_those_that_share_the_best_value() {
+        let of = |key: &str, values: &[Option<f64>]| {
+            line(metric(key).expect("the metric exists"), values).best
+        };
+        assert_eq!(of("irregular_elements", &[Some(3.0), Some(1.0), Some(1.0)]), [1, 2]);
+        assert_eq!(of("scaled_jacobian_min", &[Some(0.5), None]), [0]);
+        assert_eq!(of("scaled_jacobian_min", &[Some(0.5), Some(0.500_000_1)]), [0; 0]);
+        assert_eq!(of("V", &[Some(1.0), Some(2.0)]), [0; 0]);
     }
 
     #[test]

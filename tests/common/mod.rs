@@ -3,6 +3,7 @@
 // Each test file compiles this module for itself and uses a part of it.
 #![allow(dead_code, reason = "every test uses some of it")]
 
+pub(crate) mod browser;
 pub(crate) mod lifted;
 
 use std::path::{Path, PathBuf};
