@@ -19,21 +19,14 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
 
     // Away from its opposite twin, to where the surroundings are regular.
     let directions = [Direction::Up, Direction::Down, Direction::Left, Direction::Right];
-    let away = directions.into_iter().find_map(|to| {
-        let mark = q.mark();
-        let there = shift(&mut q, pair, to).ok().filter(|s| s.delta == 0).and_then(|s| s.dipole);
-        if there.is_none() {
-            q.undo_to(mark);
-        }
-        there
-    });
-    let start = away.ok_or("room to move")?;
+    let away = directions.into_iter().find_map(|to| shift(&mut q, pair, to, 1).ok());
+    let start = away.ok_or("room to move")?.dipole;
 
     // Up eats an edge of the stem, down gives it back: the pair stands where it stood.
     let edges = q.quads().count();
-    let up = shift(&mut q, start, Direction::Up)?.dipole.ok_or("it stands")?;
+    let up = shift(&mut q, start, Direction::Up, 1)?.dipole;
     assert_eq!(q.quads().count(), edges - 2);
-    let back = shift(&mut q, up, Direction::Down)?.dipole.ok_or("it stands")?;
+    let back = shift(&mut q, up, Direction::Down, 1)?.dipole;
     assert_eq!((q.quads().count(), q.total_irregularity()), (edges, 4));
     assert!(back.is_t_junction());
 
