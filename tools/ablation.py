@@ -26,7 +26,7 @@ VARIANTS = [
     ("relocations", ["plan.relocations=0"]),
     ("large patches (all at most 60 faces)", ["plan.patch_faces_last=60"]),
     ("all fillings of a patch but the first", ["plan.fillings=1"]),
-    ("stages (one, at the last exchange rate)", ["plan.stages=1", "plan.lambda_first=1200", "plan.patch_faces_first=2500"]),
+    ("stages (one, at the last exchange rate)", ["plan.stages=1", "plan.lambda_first=1200", "plan.patch_faces_first=2000"]),
     ("smoothing between stages", ["plan.smooth_between=0"]),
     ("relaxing before an edit is judged", ["gate.sweeps=1", "gate.refill_sweeps=1"]),
     ("cost of quads added or removed", ["cost.quads=0"]),

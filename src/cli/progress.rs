@@ -42,6 +42,10 @@ struct State {
     told: Instant,
     /// Time of the phases that are over; they may take turns.
     spent: BTreeMap<Phase, Duration>,
+    /// When the work began.
+    started: Instant,
+    /// How the irregularity fell: when, and what it was from then on.
+    fall: Vec<(Duration, usize)>,
 }
 
 impl State {
@@ -63,7 +67,14 @@ impl Progress {
             (false, false) => Show::Lines,
         };
         let now = Instant::now();
-        let state = State { phase: None, began: now, told: now, spent: BTreeMap::new() };
+        let state = State {
+            phase: None,
+            began: now,
+            told: now,
+            spent: BTreeMap::new(),
+            started: now,
+            fall: Vec::new(),
+        };
         Self { show, verbose, state: Mutex::new(state) }
     }
 
@@ -101,10 +112,13 @@ impl Progress {
         state.spent.iter().map(one).collect()
     }
 
-    /// Ends the display; if verbose, tells how long each phase took.
+    /// Ends the display; if verbose, tells how the irregularity fell and how long each phase took.
     pub(super) fn finish(self) {
         let mut state = self.lock();
         state.count_time();
+        for (when, left) in state.fall.iter().filter(|_| self.verbose) {
+            self.tell(&format!("{:>10} {:7.2} s", format!("E {left}"), when.as_secs_f64()));
+        }
         for (phase, spent) in state.spent.iter().filter(|_| self.verbose) {
             self.tell(&format!("{:>10} {:7.2} s", words(*phase), spent.as_secs_f64()));
         }
@@ -138,6 +152,10 @@ impl Watch for Progress {
         let mut state = self.lock();
         if state.phase != Some(phase) {
             self.enter(&mut state, phase);
+        }
+        if let Some(n) = irregular.filter(|&n| state.fall.last().is_none_or(|last| last.1 != n)) {
+            let when = state.started.elapsed();
+            state.fall.push((when, n));
         }
         let left = irregular.map(|n| format!("{n} irregular")).unwrap_or_default();
         match &self.show {

@@ -62,7 +62,8 @@ impl Automation<'_> {
             for step in [(Stage::Moves, lambda), refills] {
                 self.rounds((mesh, &mut contact), &mut schedule, step, watch);
             }
-            if self.plan.relocations > 0 {
+            // Early on most elements vanish anyway: moving them first is lost work.
+            if self.plan.relocations > 0 && 2 * i >= self.plan.stages {
                 // What has moved may be near enough to others now to cancel.
                 let relocations = (Stage::Relocations { faces }, -self.plan.relocation_saves);
                 for step in [relocations, refills] {

@@ -25,7 +25,7 @@ knobs! {
         min_jacobian: f64 = 0.4, in -1.0..=1.0, "1";
         /// Distance to the reference that an edit may cause before the final fit, which takes
         /// back about two thirds, as a multiple of the input's.
-        distance: f64 = 1.5, in 0.1..=10.0, "input Hausdorff distances";
+        distance: f64 = 1.3, in 0.1..=10.0, "input Hausdorff distances";
         /// How far a point of the reference may be from the faces that an edit makes, unless it
         /// was farther before.
         cover_edges: f64 = 1.0, in 0.0..=10.0, "mean edges";

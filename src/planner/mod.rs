@@ -23,7 +23,7 @@ knobs! {
     /// How edits are searched for.
     pub struct PlanOptions in "plan" {
         /// Stages, each with a larger exchange rate and larger patches.
-        stages: u32 = 5, in 0.0..=20.0, "count";
+        stages: u32 = 4, in 0.0..=20.0, "count";
         /// Exchange rate of the first stage.
         lambda_first: f64 = 80.0, in 0.0..=100_000.0, "degree-corners per element";
         /// Exchange rate of the last stage.
@@ -33,8 +33,8 @@ knobs! {
         lambda_types: f64 = 150.0, in 0.0..=100_000.0, "degree-corners";
         /// Most rounds of moves, and most rounds of refills, in a stage.
         rounds: u32 = 30, in 0.0..=1000.0, "count";
-        /// Most rounds of moving elements to where they fit better, in a stage.
-        relocations: u32 = 2, in 0.0..=1000.0, "count";
+        /// Most rounds of moving elements to where they fit better, in each stage of the second half.
+        relocations: u32 = 1, in 0.0..=1000.0, "count";
         /// What moving elements to a better place must save at least.
         relocation_saves: f64 = 40.0, in 0.0..=100_000.0, "degree-corners";
         /// Irregular elements that are planned for in the same round are this far apart.
@@ -50,11 +50,11 @@ knobs! {
         /// Most faces of a patch in the first stage.
         patch_faces_first: u32 = 60, in 0.0..=100_000.0, "faces";
         /// Most faces of a patch in the last stage.
-        patch_faces_last: u32 = 2500, in 0.0..=100_000.0, "faces";
+        patch_faces_last: u32 = 2000, in 0.0..=100_000.0, "faces";
         /// Fillings of a patch that are judged.
-        fillings: u32 = 4, in 1.0..=20.0, "count";
+        fillings: u32 = 3, in 1.0..=20.0, "count";
         /// Largest |ln| of the number of faces over that of the input.
-        size_drift: f64 = 0.07, in 0.0..=3.0, "ln";
+        size_drift: f64 = 0.08, in 0.0..=3.0, "ln";
         /// Iterations of smoothing before the first stage and after each.
         smooth_between: u32 = 40, in 0.0..=5000.0, "count";
     }
