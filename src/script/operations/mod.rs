@@ -64,7 +64,8 @@ operations! {
     "split-element": movement::SplitElement, "at, through: the reverse of merge";
     "move-t-junction": movement::MoveTJunction,
         "at, to (up, down, left, right), edges: Proposition 3.6";
-    "walk": movement::Walk, "at, steps (climb-left, glide-right, …): a T-junction by hand";
+    "walk": movement::Walk,
+        "at (or start, a half-edge), steps (climb-left, …): a T-junction by hand";
     "cancel-t-junctions": cancel::CancelTJunctions,
         "at, with, left (any, vertices, faces), path: Proposition 3.7";
     "cancel-triple": cancel::CancelTriple, "at, with (a lone element), path";
@@ -72,5 +73,8 @@ operations! {
     "flip": raw::Raw<crate::ops::Flip>, "edge, turn: an operation on the √CC mesh";
     "collapse": raw::Raw<crate::ops::Collapse>, "edge: an operation on the √CC mesh";
     "split": raw::Raw<crate::ops::Split>, "first, last: an operation on the √CC mesh";
+    "operations": raw::Operations, "ops: several operations on the √CC mesh";
+    "refill": raw::Refill, "faces, interior, rim, filling, pins: a patch of the √CC mesh";
+    "place": raw::Place, "points: one for each vertex, in the order of the output";
     "smooth": smooth::Smooth, "iterations: move the vertices on the reference";
 }
