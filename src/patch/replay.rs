@@ -106,7 +106,7 @@ impl Filling {
             a < self.rim && next(h) == (a + 1) % self.rim
         };
         let boundary: Vec<u32> = topology.boundary_half_edges().collect();
-        let edges = (self.corners.len() + boundary.len()) / 2;
+        let edges = self.corners.len().midpoint(boundary.len());
         let euler = (vertices + self.face_count()) as i64 - edges as i64;
         let inner = self.rim..vertices as u32;
         let is_disk = boundary.len() == self.rim as usize

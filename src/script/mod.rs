@@ -116,7 +116,7 @@ fn line_of(text: &str, at: usize) -> usize {
 }
 
 fn breaks(text: &str, part: Range<usize>) -> usize {
-    text.as_bytes().get(part).unwrap_or_default().iter().filter(|&&b| b == b'\n').count()
+    text.get(part).unwrap_or_default().matches('\n').count()
 }
 
 /// The message without the excerpt that TOML errors carry.
