@@ -87,11 +87,13 @@ impl Log {
     }
 }
 
+/// Makes a log wrong; the step (from 0) that is wrong then.
+type Spoil = fn(&mut Log) -> usize;
+
 #[test]
 fn a_wrong_log_is_refused_with_its_step() {
     let meshes = sample();
     let (_, text) = cleaned(&meshes);
-    type Spoil = fn(&mut Log) -> usize;
     let spoils: [(&str, &str, Spoil); 9] = [
         ("walk", "no adjacent pair", |log| {
             let i = log.first("walk");
