@@ -119,17 +119,26 @@ pub fn clean(
     })
 }
 
-/// The edits that [`clean`] would make, without the result.
+/// The edits that [`clean`] would make.
+#[derive(Debug, Clone)]
+pub struct Planned {
+    /// The edits, in order.
+    pub edits: Vec<EditRecord>,
+    /// What they and the smoothing between them make of the mesh.
+    pub mesh: PolyMesh,
+}
+
+/// Plans as [`clean`] does, but measures nothing.
 pub fn plan(
     mesh: PolyMesh,
     reference: Option<&PolyMesh>,
     policy: MendPolicy,
     config: &Config,
     watch: &dyn Watch,
-) -> Result<Vec<EditRecord>, CleanError> {
+) -> Result<Planned, CleanError> {
     let (mesh, _) = mend(mesh, policy)?;
-    let (_, _, schedule) = edit(&mesh, reference.unwrap_or(&mesh), config, watch)?;
-    Ok(schedule.edits)
+    let (q, _, schedule) = edit(&mesh, reference.unwrap_or(&mesh), config, watch)?;
+    Ok(Planned { edits: schedule.edits, mesh: lower(&q, mesh.group_names())?.mesh })
 }
 
 /// Lifts, plans, edits and smooths; also the number of feature edges.

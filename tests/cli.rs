@@ -424,6 +424,26 @@ fn edit_writes_the_mesh_and_logs_each_step() {
 }
 
 #[test]
+fn the_logs_of_clean_and_plan_replay_to_the_same_bytes() {
+    let bench = Bench::new();
+    let surface = ["-r", REFERENCE, "--set", "plan.stages=1", "--set", "smooth.iterations=20"];
+    let run = |command: &[&str]| bench.run(command.iter().chain(&surface));
+    run(&["clean", SAMPLE, "-o", "clean.obj", "--log", "clean.toml"]).ends(0);
+    run(&["plan", SAMPLE, "-o", "plan.toml"]).ends(0);
+    assert_eq!(bench.read("plan.toml"), bench.read("clean.toml"));
+    run(&["edit", SAMPLE, "--script", "plan.toml", "-o", "edited.obj", "-q"]).ends(0);
+    assert!(bench.read("edited.obj") == bench.read("clean.obj"));
+
+    bench.write("wrong.toml", &bench.read("plan.toml").replacen("start = ", "start = 99", 1));
+    let wrong = run(&["edit", SAMPLE, "--script", "wrong.toml", "-o", "edited.obj"]);
+    wrong.fails(3, &["step ", "walk", "no adjacent pair"]);
+    assert!(bench.read("edited.obj") == bench.read("clean.obj"), "the output is untouched");
+    run(&["clean", SAMPLE, "-o", "o.obj", "--log", SAMPLE]).fails(2, &["would be overwritten"]);
+    run(&["plan", SAMPLE, "-o", "nowhere/edits.toml"]).fails(2, &["nowhere"]);
+    run(&["plan", SAMPLE, "-o", "-", "--json"]).fails(2, &["--json"]);
+}
+
+#[test]
 fn a_wrong_script_never_changes_the_output() {
     let bench = Bench::new();
     bench.write("in.obj", &grid(8));

@@ -25,6 +25,6 @@ fn the_sample_becomes_pure_quads() {
 }
 
 #[test]
-fn a_session_ends_with_quads_and_can_be_undone() {
+fn a_scripted_session_ends_with_quads() {
     session::main().unwrap();
 }

@@ -263,6 +263,69 @@ fn numbers_of_a_mesh_that_had_to_be_mended_are_not_trusted() {
     assert!(error.contains("had to be mended"), "{error}");
 }
 
+/// The sample mesh with a script, on its own surface.
+fn on_the_sample(text: &str) -> Edited {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mesh = quadmend::io::read(&folder.join("assets/bracket.obj")).unwrap().mesh;
+    let script = Script::parse(text, "edits.toml").unwrap();
+    let config = Config::default();
+    edit(mesh, None, MendPolicy::Mend, &script, (&config, false), &Silent).unwrap()
+}
+
+#[test]
+fn disks_are_regularised_and_pure_quads_made() {
+    let edited = on_the_sample(
+        "
+        [[step]]
+        do = 'regularize'
+        at = { all = 'irregular' }
+        most = 40
+
+        [[step]]
+        do = 'pure-quad'
+
+        [[step]]
+        do = 'faces-from-vertices'
+
+        [[step]]
+        do = 'pure-quad'
+    ",
+    );
+    let [regular, quads, faces, _] = &edited.steps[..] else { panic!("four steps") };
+    assert!(regular.after < regular.before / 2, "{}", regular.done);
+    assert!(!regular.refills.is_empty() && regular.ops.is_empty());
+    assert!(quads.done.contains(" left") && !quads.ops.is_empty(), "{}", quads.done);
+    assert!(!faces.ops.is_empty(), "{}", faces.done);
+    let odd = edited.mesh.faces().filter(|face| face.len() != 4).count();
+    assert!(odd <= 2, "{odd} faces are left: {}", edited.steps[3].done);
+    check(&edited.mesh).unwrap();
+}
+
+#[test]
+fn a_set_of_faces_is_regularised_and_the_mesh_optimised() {
+    let edited = run("
+        [[step]]
+        do = 'regularize'
+        faces = [{ all = 'faces', within = { min = [3, 2, -1], max = [16, 6, 1] } }]
+        most = 200
+
+        [[step]]
+        do = 'optimize'
+        goal = 'angles'
+
+        [[step]]
+        do = 'optimize'
+        goal = 'planar'
+    ")
+    .unwrap();
+    assert_eq!((edited.steps[0].before, edited.steps[0].after), (4, 0));
+    assert_eq!(edited.steps[0].refills.len(), 1);
+    assert!(edited.steps[1].done.contains("angles"), "{}", edited.steps[1].done);
+    assert!(edited.mesh.faces().all(|f| f.len() == 4));
+    let both = "[[step]]\ndo = 'regularize'\nat = { vertex = 1 }\nfaces = [{ face = 1 }]";
+    assert!(refusal(both).contains("either `at`"));
+}
+
 #[test]
 fn every_operation_has_a_name_of_its_own_and_words() {
     let mut names: Vec<&str> = OPERATIONS.iter().map(|kind| kind.name).collect();

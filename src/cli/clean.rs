@@ -25,6 +25,8 @@ Examples:
   quadmend clean remesh.obj -o clean.obj --report report.html --pictures pictures
   quadmend clean - -o - < remesh.obj > clean.obj
   quadmend clean remesh.obj -o clean.obj --json report.json --fail-if 't_junctions>0'
+  quadmend clean remesh.obj -o clean.obj --log edits.toml
+  quadmend edit remesh.obj --script edits.toml -o clean.obj    # the same bytes
 
 Faults that can be mended without a doubt (torn edges, turned faces, doublets, stray vertices) are
 mended first and told. Boundaries and sharp features stay where they are. The table before/after
@@ -55,6 +57,11 @@ pub(super) struct Clean {
     /// [default: none]
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+
+    /// Write the edits as a script with which `quadmend edit` makes the same mesh again (TOML, -
+    /// for standard output) [default: none]
+    #[arg(long, value_name = "FILE")]
+    log: Option<PathBuf>,
 
     /// Write a report as a single HTML file that opens offline: both meshes in 3D, heat maps, every
     /// edit, metrics before and after [default: none]
@@ -104,6 +111,9 @@ impl Clean {
         if let Some(path) = &self.json {
             output::file(path, &output::json(&cleaned.report)?)?;
         }
+        if let Some(path) = &self.log {
+            output::file(path, &output::log(&cleaned.report.edits, &cleaned.mesh)?)?;
+        }
         if self.pictures.is_some() || self.report.is_some() {
             let shown = Aftermath::new((&input, reference.as_ref()), &cleaned, &config);
             self.show(&shown, progress.timings())?;
@@ -142,7 +152,8 @@ impl Clean {
 
     /// Where reports go.
     fn other_outputs(&self) -> Vec<&Path> {
-        [self.json.as_deref(), self.report.as_deref()].into_iter().flatten().collect()
+        let others = [&self.json, &self.log, &self.report];
+        others.into_iter().flatten().map(PathBuf::as_path).collect()
     }
 
     fn tell(&self, report: &Report) -> Result<(), Failure> {

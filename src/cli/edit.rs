@@ -162,12 +162,12 @@ impl Edit {
 /// The steps one by one, then what was refused.
 fn log(edited: &Edited) -> String {
     let mut text = String::new();
-    for StepRecord { step, operation, done, before, after, ops } in &edited.steps {
+    for StepRecord { step, operation, done, before, after, ops, refills } in &edited.steps {
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
             "step {step}: {operation}: {done} (E {before} → {after}, {} operations)",
-            ops.len()
+            ops.len() + refills.len()
         );
     }
     for error in &edited.refused {

@@ -4,6 +4,8 @@ use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 
 use quadmend::io::{WriteError, write_atomically};
+use quadmend::mesh::PolyMesh;
+use quadmend::planner::schedule::EditRecord;
 use quadmend::render::Image;
 use serde::Serialize;
 
@@ -32,6 +34,12 @@ pub(super) fn json(value: &impl Serialize) -> Result<String, Failure> {
     let text = serde_json::to_string_pretty(value);
     let text = text.map_err(|e| Failure::usage(format!("the result is no JSON: {e}")))?;
     Ok(text + "\n")
+}
+
+/// The edits of a run as a script that makes them again and leaves the vertices as in `mesh`.
+pub(super) fn log(edits: &[EditRecord], mesh: &PolyMesh) -> Result<String, Failure> {
+    let text = quadmend::script::log(edits, mesh.points());
+    text.map_err(|e| Failure::usage(format!("the edits are no TOML: {e}")))
 }
 
 /// Writes a text to a file, whole or not at all; `-` is standard output.

@@ -9,8 +9,10 @@
 pub mod embed;
 pub mod refill;
 pub mod region;
+mod replay;
 pub mod template;
 
 pub use refill::Refill;
 pub use region::{Grower, Region};
+pub use replay::Misfit;
 pub use template::{Filling, fillings};

@@ -8,10 +8,11 @@ use crate::mesh::{NONE, Point};
 use crate::ops::{MAX_VALENCE, MIN_VALENCE, Refusal};
 use crate::sqrtcc::{HalfEdge, QuadMesh, Vertex};
 use rustc_hash::FxHashMap;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A region and what to put in its place.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Refill {
     /// The faces that go.
     pub faces: Vec<Vertex>,

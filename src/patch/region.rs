@@ -124,6 +124,12 @@ impl Grower {
         }
     }
 
+    /// The region of just the faces taken in, if they are a disk; its rim may have dents.
+    pub fn disk(&mut self, mesh: &QuadMesh) -> Result<Region, Stop> {
+        let rim = self.rim(mesh)?;
+        self.region(mesh, rim)
+    }
+
     fn is_rim(&self, mesh: &QuadMesh, h: HalfEdge) -> bool {
         mesh.is_frozen(QuadMesh::quad(h)) || !self.holds(mesh.origin(QuadMesh::opposite(h)))
     }

@@ -13,10 +13,11 @@
 //!        └───────── L_{i+1} ─── centre ─── L_{i−1} ───┘
 //! ```
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A polygonal disk: rim vertices 0…n−1 in order, then new ones.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Filling {
     /// Number of rim vertices.
     pub rim: u32,

@@ -64,12 +64,7 @@ pub fn optimize(
     watch.progress(Phase::Reference, 0, 1, None);
     let reference = Reference::new(reference.unwrap_or(&mesh))?;
     let topology = Topology::new(&mesh);
-    let edge = mean_edge(&mesh, &topology);
-    let start = budget(&mesh, &reference, (&config.gate, edge))?;
-    let allowed = Budget {
-        hausdorff: start.hausdorff.max(config.optimize.hausdorff_edges * edge),
-        rms: start.rms.max(config.optimize.rms_edges * edge),
-    };
+    let allowed = allowed(&mesh, &reference, config)?;
     let held = held(&mesh, &topology, &reference, config);
     let before = State::of(&mesh, &reference)?;
     let options =
@@ -80,6 +75,20 @@ pub fn optimize(
     let after = State::of(&mesh, &reference)?;
     let held = held.into_iter().filter(|&h| h).count();
     Ok(Optimized { mesh, report: Report { goal, mends, held, before, after } })
+}
+
+/// How far from the reference vertices may go.
+pub(crate) fn allowed(
+    mesh: &PolyMesh,
+    reference: &Reference,
+    config: &Config,
+) -> Result<Budget, CleanError> {
+    let edge = mean_edge(mesh, &Topology::new(mesh));
+    let start = budget(mesh, reference, (&config.gate, edge))?;
+    Ok(Budget {
+        hausdorff: start.hausdorff.max(config.optimize.hausdorff_edges * edge),
+        rms: start.rms.max(config.optimize.rms_edges * edge),
+    })
 }
 
 /// Which vertices stay: those of boundaries and features, and those on creases.

@@ -9,7 +9,7 @@ use crate::config::Config;
 use crate::mesh::{MendPolicy, MendReport, MeshError, PolyMesh, Topology, check, mend};
 use crate::metrics::{Metrics, Target, measure};
 use crate::moves::pure::{self, Conversion, Kind};
-use crate::smooth::{Budget, Surroundings, orientation, smooth};
+use crate::smooth::{Budget, Orientation, RelaxOptions, Surroundings, orientation, smooth};
 use crate::sqrtcc::{QuadMesh, Vertex, lower};
 use crate::surface::{Reference, deviation, mean_edge};
 use crate::watch::{Phase, Watch};
@@ -85,17 +85,36 @@ fn edit(
     let topology = Topology::new(mesh);
     let allowed = budget(mesh, &reference, (&config.gate, mean_edge(mesh, &topology)))?;
     let (mut q, feature_edges) = lift_held(mesh, &topology, &reference, &config.features)?;
-    let side = orientation(mesh, &reference);
+    let surface = (&reference, orientation(mesh, &reference));
+    let Settled { conversion, touched } =
+        convert_settled(&mut q, Kind::Faces, surface, &config.relax, watch);
+    smooth_around(&mut q, &touched, (&reference, allowed), config, watch)?;
+    q.commit();
+    Ok((q, feature_edges, conversion))
+}
+
+/// A conversion, and the vertices that it tried to change.
+pub(crate) struct Settled {
+    pub(crate) conversion: Conversion,
+    pub(crate) touched: Vec<Vertex>,
+}
+
+/// Converts, and relaxes the surroundings of each change on the surface.
+pub(crate) fn convert_settled(
+    q: &mut QuadMesh,
+    kind: Kind,
+    (reference, side): (&Reference, Orientation),
+    relax: &RelaxOptions,
+    watch: &dyn Watch,
+) -> Settled {
     let mut touched = Vec::new();
     let mut settle = |q: &mut QuadMesh, changed: &[Vertex]| {
         let around = Surroundings::gather(q, changed, RINGS);
         touched.extend_from_slice(changed);
-        around.relax(q, (&reference, side), &config.relax, SWEEPS) - POOR
+        around.relax(q, (reference, side), relax, SWEEPS) - POOR
     };
-    let conversion = pure::convert(&mut q, Kind::Faces, &mut settle, watch);
-    smooth_around(&mut q, &touched, (&reference, allowed), config, watch)?;
-    q.commit();
-    Ok((q, feature_edges, conversion))
+    let conversion = pure::convert(q, kind, &mut settle, watch);
+    Settled { conversion, touched }
 }
 
 /// Smooths what is near the `touched` vertices, within the budget of distance.

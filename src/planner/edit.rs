@@ -8,7 +8,7 @@ use crate::patch::Refill;
 use crate::sqrtcc::QuadMesh;
 use serde::Serialize;
 
-/// A change of connectivity, planned on a mesh with so many ids.
+/// A change of connectivity.
 #[derive(Debug, Clone, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Edit {
@@ -47,14 +47,26 @@ pub struct CostTerm {
 }
 
 impl Edit {
-    /// Makes the edit on a mesh that may have got more elements since it was planned on `planned`
-    /// quad ids; whole or not at all.
-    pub fn run(&self, mesh: &mut QuadMesh, planned: u32) -> Result<(), Refusal> {
+    /// The edit as it has to be made on a mesh with so many quad ids `now`, after it was planned
+    /// on `planned` of them: operations that follow one another name what the ones before made.
+    #[must_use]
+    pub fn rebased(self, planned: u32, now: u32) -> Self {
+        let rebased = |ops: Vec<Op>| {
+            ops.into_iter().map(|op| op.rebased(4 * planned, 4 * now)).collect::<Vec<Op>>()
+        };
+        match self {
+            Self::Local { ops } => Self::Local { ops: rebased(ops) },
+            Self::TypeChange { ops } => Self::TypeChange { ops: rebased(ops) },
+            other => other,
+        }
+    }
+
+    /// Makes the edit, whole or not at all.
+    pub fn run(&self, mesh: &mut QuadMesh) -> Result<(), Refusal> {
         let mark = mesh.mark();
         let done = match self {
             Self::Local { ops } | Self::TypeChange { ops } => {
-                let to = 4 * mesh.quad_ids();
-                ops.iter().try_for_each(|op| op.rebased(4 * planned, to).run(mesh).map(|_| ()))
+                ops.iter().try_for_each(|op| op.run(mesh).map(drop))
             }
             Self::Walk { start, steps, .. } => walk(mesh, *start, steps),
             Self::Refill(refill) => refill.run(mesh),

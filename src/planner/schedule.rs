@@ -33,7 +33,7 @@ pub struct EditRecord {
     pub angle_growth_deg: f64,
     /// Where it was made.
     pub place: [f64; 3],
-    /// What was done.
+    /// What was done, in numbers that are valid after the edits before it.
     #[serde(flatten)]
     pub edit: Edit,
 }
@@ -229,7 +229,7 @@ impl Schedule {
         // Vertices that an edit of this round has moved; others leave them unless they must not.
         let mut taken = FxHashSet::default();
         let mut made = 0;
-        for (proposal, scope) in proposals {
+        for (mut proposal, scope) in proposals {
             let free = |&v: &Vertex| v >= planned.0 || self.changed[v as usize] < self.round;
             if !proposal.touched.iter().all(free) {
                 continue;
@@ -239,7 +239,8 @@ impl Schedule {
                 continue;
             }
             let (first_new, mark) = (mesh.vertex_ids(), mesh.mark());
-            let Some(gain) = makes(mesh, &proposal, planned.1) else { continue };
+            proposal.edit = proposal.edit.rebased(planned.1, mesh.quad_ids());
+            let Some(gain) = makes(mesh, &proposal) else { continue };
             let moved = proposal.moved_to(planned.0, first_new);
             let moved: Vec<_> = moved
                 .filter(|m| !(taken.contains(&m.0) && proposal.core.binary_search(&m.0).is_err()))
@@ -286,14 +287,14 @@ impl Schedule {
 }
 
 /// Makes the edit if it still does what was planned; how many irregular elements fewer there are.
-fn makes(mesh: &mut QuadMesh, proposal: &Proposal, planned: u32) -> Option<i32> {
+fn makes(mesh: &mut QuadMesh, proposal: &Proposal) -> Option<i32> {
     let (mark, around) = (mesh.mark(), &proposal.core);
     let irregularity = |mesh: &QuadMesh, vertices: &[Vertex]| -> u32 {
         let alive = vertices.iter().filter(|&&v| v < mesh.vertex_ids() && mesh.is_alive(v));
         alive.map(|&v| mesh.irregularity(v)).sum()
     };
     let before = irregularity(mesh, around);
-    proposal.edit.run(mesh, planned).ok()?;
+    proposal.edit.run(mesh).ok()?;
     let mut now = mesh.touched_since(mark);
     now.extend(around);
     now.sort_unstable();

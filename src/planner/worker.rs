@@ -377,8 +377,7 @@ impl Worker {
     ) -> Result<Proposal, f64> {
         let task = context.task;
         let mark = self.mesh.mark();
-        let planned = self.mesh.quad_ids();
-        edit.run(&mut self.mesh, planned).map_err(|_| f64::INFINITY)?;
+        edit.run(&mut self.mesh).map_err(|_| f64::INFINITY)?;
         let touched = self.mesh.touched_since(mark);
         let core = self.with_neighbours(&touched);
         let faces_after = count_faces(&self.mesh, &touched);

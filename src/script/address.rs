@@ -47,6 +47,9 @@ impl Select {
     /// Whether `v` is one.
     #[must_use]
     pub fn takes(self, mesh: &QuadMesh, v: Vertex) -> bool {
+        if v >= mesh.vertex_ids() || !mesh.is_alive(v) {
+            return false;
+        }
         let kind = |wanted| Element::at(mesh, v).is_ok_and(|element| element.kind == wanted);
         let free = !is_on_line(mesh, v);
         match self {
@@ -187,6 +190,14 @@ impl Address {
                 .filter(|&v| select.takes(mesh, v))
                 .collect()),
             Self::Result(step, number) => session.result(step, number).map(|v| vec![v]),
+        }
+    }
+
+    /// The kind that all of are meant, if it is such an address.
+    pub(super) fn selects(&self) -> Option<Select> {
+        match *self {
+            Self::All(select, _) => Some(select),
+            _ => None,
         }
     }
 

@@ -13,21 +13,26 @@
 //! [[step]]
 //! do = "smooth"
 //! ```
+//! What [`log`] writes is a script, too: the edits of a cleaned mesh, which make the same mesh again.
+//!
 //! *Invariant:* a step is made whole or not at all, and so is a script unless it keeps going.
 
 pub mod address;
 mod error;
+mod log;
 mod operations;
 mod run;
 mod session;
 
 pub use error::{ScriptError, StepError, Trouble};
+pub use log::log;
 pub use operations::{OPERATIONS, OperationKind};
 pub use run::{Done, Edited, StepRecord, edit};
 pub use session::Session;
 
 use operations::Operation;
 use serde::Deserialize;
+use std::ops::Range;
 use toml::{Spanned, Table, Value};
 
 /// A list of edits, checked as far as that goes without a mesh.
@@ -63,8 +68,12 @@ impl Script {
         if raw.step.is_empty() {
             return Err(ScriptError::Empty { file: file.to_owned() });
         }
+        let (mut line, mut counted) = (1, 0);
         let steps = raw.step.into_iter().enumerate().map(|(i, table)| {
-            let line = line_of(text, table.span().start);
+            // Steps come in the order of the text: each line break is counted once.
+            let start = table.span().start.max(counted);
+            line += breaks(text, counted..start);
+            counted = start;
             step(table.into_inner(), line).map_err(|message| ScriptError::Step {
                 file: file.to_owned(),
                 line,
@@ -103,7 +112,11 @@ fn step(mut table: Table, line: usize) -> Result<Step, String> {
 }
 
 fn line_of(text: &str, at: usize) -> usize {
-    1 + text.bytes().take(at).filter(|&b| b == b'\n').count()
+    1 + breaks(text, 0..at)
+}
+
+fn breaks(text: &str, part: Range<usize>) -> usize {
+    text.get(part).unwrap_or_default().matches('\n').count()
 }
 
 /// The message without the excerpt that TOML errors carry.

@@ -7,6 +7,7 @@ use super::{Script, Step};
 use crate::config::Config;
 use crate::mesh::{MendPolicy, PolyMesh, Topology, check, mend};
 use crate::ops::Op;
+use crate::patch::Refill;
 use crate::pipeline::{CleanError, lift_held};
 use crate::sqrtcc::{Vertex, lower};
 use crate::surface::Reference;
@@ -22,6 +23,8 @@ pub struct Done {
     pub results: Vec<Vertex>,
     /// The operations on Q that it was made of.
     pub ops: Vec<Op>,
+    /// The refills that it was made of.
+    pub refills: Vec<Refill>,
 }
 
 /// A step that was carried out, for the log.
@@ -40,6 +43,9 @@ pub struct StepRecord {
     pub after: u64,
     /// The operations on the √CC mesh, which can be steps of a script themselves.
     pub ops: Vec<Op>,
+    /// The refills, which can be steps, too.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub refills: Vec<Refill>,
 }
 
 /// A mesh after a script.
@@ -70,19 +76,18 @@ pub fn edit(
     watch.progress(Phase::Reference, 0, 1, None);
     let surface = Reference::new(reference.unwrap_or(&mesh))?;
     let (q, _) = lift_held(&mesh, &Topology::new(&mesh), &surface, &config.features)?;
-    let means = Means {
-        reference: &surface,
-        smooth: &config.smooth,
-        relax: &config.relax,
-        keep_going,
-        numbers_hold: mends.mends.is_empty(),
-    };
+    let means =
+        Means { reference: &surface, config, keep_going, numbers_hold: mends.mends.is_empty() };
     let mut session = Session::new(q, &mesh, means);
     let (mut steps, mut refused) = (Vec::new(), Vec::new());
+    let mut irregularity = session.mesh().total_irregularity();
     for (i, step) in script.steps.iter().enumerate() {
         watch.progress(Phase::Edit, i, script.len(), None);
-        match carry_out(&mut session, step, i + 1, watch) {
-            Ok(record) => steps.push(record),
+        match carry_out(&mut session, step, (i + 1, irregularity), watch) {
+            Ok(record) => {
+                irregularity = record.after;
+                steps.push(record);
+            }
             Err(error) if keep_going => {
                 session.remember(Vec::new());
                 refused.push(error);
@@ -99,15 +104,14 @@ pub fn edit(
     Ok(Edited { mesh: result, steps, refused })
 }
 
-/// One step, whole or not at all.
+/// One step, whole or not at all; `before` is E before it.
 fn carry_out(
     session: &mut Session,
     step: &Step,
-    number: usize,
+    (number, before): (usize, u64),
     watch: &dyn Watch,
 ) -> Result<StepRecord, StepError> {
     let mark = session.mesh().mark();
-    let before = session.mesh().total_irregularity();
     match step.operation.run(session, watch) {
         Ok(done) => {
             session.remember(done.results);
@@ -119,6 +123,7 @@ fn carry_out(
                 before,
                 after,
                 ops: done.ops,
+                refills: done.refills,
             })
         }
         Err(trouble) => {
@@ -161,6 +166,7 @@ impl Session<'_> {
                     sum.words = done.words;
                     sum.results.extend(done.results);
                     sum.ops.extend(done.ops);
+                    sum.refills.extend(done.refills);
                 }
                 Err(trouble) if self.keep_going && elements.len() > 1 => {
                     let explained = self.explain(&trouble.at(v));

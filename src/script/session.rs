@@ -1,8 +1,8 @@
 //! The mesh while a script works on it, and what its elements are called.
 
 use super::error::{Reason, Trouble};
+use crate::config::Config;
 use crate::mesh::PolyMesh;
-use crate::smooth::{RelaxOptions, SmoothOptions};
 use crate::sqrtcc::{QuadMesh, Vertex};
 use crate::surface::Reference;
 
@@ -22,16 +22,14 @@ pub struct Session<'a> {
     pub(super) passed_over: Vec<Explained>,
     pub(super) group_names: &'a [String],
     pub(super) reference: &'a Reference,
-    pub(super) smooth: &'a SmoothOptions,
-    pub(super) relax: &'a RelaxOptions,
+    pub(super) config: &'a Config,
 }
 
 /// What a session works with besides the mesh.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Means<'a> {
     pub(super) reference: &'a Reference,
-    pub(super) smooth: &'a SmoothOptions,
-    pub(super) relax: &'a RelaxOptions,
+    pub(super) config: &'a Config,
     pub(super) keep_going: bool,
     pub(super) numbers_hold: bool,
 }
@@ -51,8 +49,7 @@ impl<'a> Session<'a> {
             passed_over: Vec::new(),
             group_names: mesh.group_names(),
             reference: means.reference,
-            smooth: means.smooth,
-            relax: means.relax,
+            config: means.config,
         }
     }
 

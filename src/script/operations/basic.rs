@@ -103,5 +103,5 @@ fn made(
 ) -> Result<Done, Trouble> {
     let Made { op, element } = act(session.mesh_mut())?;
     let words = format!("{word}{}", session.name(element));
-    Ok(Done { words, results: vec![element], ops: vec![op] })
+    Ok(Done { words, results: vec![element], ops: vec![op], ..Done::default() })
 }

@@ -90,7 +90,12 @@ fn told(session: &Session, done: Cancelled) -> Done {
         Outcome::Complete => "complete: all four are gone".to_owned(),
         _ => format!("left: {}", kinds(session, &done.left.unwrap_or_default())),
     };
-    Done { words, results: done.left.into_iter().flatten().collect(), ops: done.ops }
+    Done {
+        words,
+        results: done.left.into_iter().flatten().collect(),
+        ops: done.ops,
+        ..Done::default()
+    }
 }
 
 /// Lets a lone element swallow a dislocation.
@@ -118,7 +123,7 @@ impl Operation for CancelTriple {
             };
             let done = triple(session.mesh_mut(), dipole, lone, route(&stops))?;
             let words = format!("left: {}", kinds(session, &[done.left.at]));
-            Ok(Done { words, results: vec![done.left.at], ops: done.ops })
+            Ok(Done { words, results: vec![done.left.at], ops: done.ops, ..Done::default() })
         })
     }
 }

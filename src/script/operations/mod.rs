@@ -6,7 +6,10 @@
 mod basic;
 mod cancel;
 mod movement;
+mod optimize;
+mod pure;
 mod raw;
+mod regularize;
 mod smooth;
 
 use super::error::Trouble;
@@ -64,13 +67,22 @@ operations! {
     "split-element": movement::SplitElement, "at, through: the reverse of merge";
     "move-t-junction": movement::MoveTJunction,
         "at, to (up, down, left, right), edges: Proposition 3.6";
-    "walk": movement::Walk, "at, steps (climb-left, glide-right, …): a T-junction by hand";
+    "walk": movement::Walk,
+        "at (or start, a half-edge), steps (climb-left, …): a T-junction by hand";
     "cancel-t-junctions": cancel::CancelTJunctions,
         "at, with, left (any, vertices, faces), path: Proposition 3.7";
     "cancel-triple": cancel::CancelTriple, "at, with (a lone element), path";
     "cancel-quadruple": cancel::CancelQuadruple, "at, with (another pair), left, path";
+    "regularize": regularize::Regularize,
+        "at, or faces (a list), most (60): refill disks with fewer irregular elements (Figure 11)";
+    "pure-quad": pure::PureQuad, "every irregular face that parity allows to vertices";
+    "faces-from-vertices": pure::FacesFromVertices, "every irregular vertex to faces";
     "flip": raw::Raw<crate::ops::Flip>, "edge, turn: an operation on the √CC mesh";
     "collapse": raw::Raw<crate::ops::Collapse>, "edge: an operation on the √CC mesh";
     "split": raw::Raw<crate::ops::Split>, "first, last: an operation on the √CC mesh";
+    "operations": raw::Operations, "ops: several operations on the √CC mesh";
+    "refill": raw::Refill, "faces, interior, rim, filling, pins: a patch of the √CC mesh";
+    "place": raw::Place, "points: one for each vertex, in the order of the output";
     "smooth": smooth::Smooth, "iterations: move the vertices on the reference";
+    "optimize": optimize::Optimize, "goal (planar, angles): move the vertices near the reference";
 }

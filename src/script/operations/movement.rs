@@ -10,7 +10,7 @@ use crate::script::address::{Address, Select, dislocation, nearest};
 use crate::script::error::Trouble;
 use crate::script::run::Done;
 use crate::script::session::Session;
-use crate::sqrtcc::Vertex;
+use crate::sqrtcc::{QuadMesh, Vertex};
 use crate::watch::Watch;
 use serde::Deserialize;
 
@@ -81,7 +81,12 @@ impl Operation for Convert {
             let done = convert(session.mesh_mut(), v, towards)?;
             let ends = ends(session, done.pair);
             let words = format!("now {}", kinds(session, &[done.element, ends[0], ends[1]]));
-            Ok(Done { words, results: vec![done.element, ends[0], ends[1]], ops: vec![done.op] })
+            Ok(Done {
+                words,
+                results: vec![done.element, ends[0], ends[1]],
+                ops: vec![done.op],
+                ..Done::default()
+            })
         })
     }
 }
@@ -102,7 +107,7 @@ impl Operation for GeneratePairs {
             .map_err(|refusal| Trouble::from(refusal).at(v))?;
         let results = pairs.map(|d| ends(session, d)).concat();
         let words = format!("made {}", kinds(session, &results));
-        Ok(Done { words, results, ops: vec![op] })
+        Ok(Done { words, results, ops: vec![op], ..Done::default() })
     }
 }
 
@@ -124,7 +129,7 @@ impl Operation for Merge {
         let merged = merge(session.mesh_mut(), [at, with], route(&stops))
             .map_err(|refusal| Trouble::from(refusal).at(at))?;
         let words = format!("now {}", session.name(merged.element));
-        Ok(Done { words, results: vec![merged.element], ops: merged.ops })
+        Ok(Done { words, results: vec![merged.element], ops: merged.ops, ..Done::default() })
     }
 }
 
@@ -144,7 +149,7 @@ impl Operation for SplitElement {
         session.each(&elements, Select::Six, |session, v| {
             let (pair, made) = split_element(session.mesh_mut(), v, through)?;
             let words = format!("now {}", kinds(session, &pair));
-            Ok(Done { words, results: pair.to_vec(), ops: vec![made.op] })
+            Ok(Done { words, results: pair.to_vec(), ops: vec![made.op], ..Done::default() })
         })
     }
 }
@@ -167,7 +172,7 @@ impl Operation for MoveTJunction {
             let done = t_junction::shift(session.mesh_mut(), at, self.to, self.edges)?;
             let results = ends(session, done.dipole).to_vec();
             let words = format!("now at {}", session.name(results[0]));
-            Ok(Done { words, results, ops: done.ops })
+            Ok(Done { words, results, ops: done.ops, ..Done::default() })
         })
     }
 }
@@ -176,14 +181,17 @@ impl Operation for MoveTJunction {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Walk {
-    at: Address,
+    at: Option<Address>,
+    /// The half-edge of the √CC mesh from its edge too few to the one too many: what logs have.
+    start: Option<Dipole>,
     steps: Vec<Step>,
 }
 
 impl Operation for Walk {
     fn run(&self, session: &mut Session, _: &dyn Watch) -> Result<Done, Trouble> {
-        let v = self.at.one(session, Select::Dislocations)?;
-        let mut at = Some(standing(session, v)?);
+        let start = self.place(session)?;
+        let v = session.mesh().origin(start.0);
+        let mut at = Some(start);
         let mut ops = Vec::new();
         for (i, &step) in self.steps.iter().enumerate() {
             let gone =
@@ -198,7 +206,29 @@ impl Operation for Walk {
             Some(&x) => format!("now at {}", session.name(x)),
             None => "absorbed".to_owned(),
         };
-        Ok(Done { words, results, ops })
+        Ok(Done { words, results, ops, ..Done::default() })
+    }
+}
+
+impl Walk {
+    /// Where the walk begins.
+    fn place(&self, session: &Session) -> Result<Dipole, Trouble> {
+        match (&self.at, self.start) {
+            (Some(address), None) => {
+                let v = address.one(session, Select::Dislocations)?;
+                standing(session, v)
+            }
+            (None, Some(start)) => {
+                let (mesh, quad) = (session.mesh(), QuadMesh::quad(start.0));
+                let is_there = quad < mesh.quad_ids() && mesh.is_quad_alive(quad);
+                if is_there && start.stands(mesh) {
+                    Ok(start)
+                } else {
+                    Err(MoveRefusal::NotADislocation.into())
+                }
+            }
+            _ => Err(Trouble::other("a walk begins either `at` an address or at a `start`")),
+        }
     }
 }
 
@@ -243,7 +273,7 @@ fn partner(
 
 fn told(session: &Session, moved: Moved) -> Done {
     let words = format!("now {}", kinds(session, &moved.pair));
-    Done { words, results: moved.pair.to_vec(), ops: moved.ops }
+    Done { words, results: moved.pair.to_vec(), ops: moved.ops, ..Done::default() }
 }
 
 /// The elements with their kinds.

@@ -1,10 +1,13 @@
-//! The three operations on Q by its numbers: what logs consist of.
+//! Steps by the numbers of Q, as logs consist of them: nothing is searched for.
 
 use super::Operation;
+use crate::mesh::Point;
 use crate::ops::{Collapse, Flip, Op, Split};
+use crate::patch;
 use crate::script::error::Trouble;
 use crate::script::run::Done;
 use crate::script::session::Session;
+use crate::sqrtcc::Vertex;
 use crate::watch::Watch;
 use serde::Deserialize;
 
@@ -38,6 +41,70 @@ where
     fn run(&self, session: &mut Session, _: &dyn Watch) -> Result<Done, Trouble> {
         let op: Op = (*self).into();
         op.run(session.mesh_mut())?;
-        Ok(Done { words: "done".to_owned(), results: Vec::new(), ops: vec![op] })
+        Ok(Done { words: "done".to_owned(), results: Vec::new(), ops: vec![op], ..Done::default() })
+    }
+}
+
+/// Several operations that belong together.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Operations {
+    ops: Vec<Op>,
+}
+
+impl Operation for Operations {
+    fn run(&self, session: &mut Session, _: &dyn Watch) -> Result<Done, Trouble> {
+        for op in &self.ops {
+            op.run(session.mesh_mut())?;
+        }
+        Ok(Done { words: "done".to_owned(), ops: self.ops.clone(), ..Done::default() })
+    }
+}
+
+/// A patch with what takes its place.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(transparent)]
+pub(super) struct Refill(patch::Refill);
+
+impl Operation for Refill {
+    fn run(&self, session: &mut Session, _: &dyn Watch) -> Result<Done, Trouble> {
+        let mesh = session.mesh_mut();
+        let fitted = self.0.fitted(mesh).map_err(|misfit| Trouble::other(misfit.to_string()))?;
+        let mark = mesh.mark();
+        fitted.run(mesh)?;
+        let touched = mesh.touched_since(mark);
+        for v in touched.into_iter().filter(|&v| mesh.is_alive(v)) {
+            mesh.check_vertex(v).map_err(|violation| Trouble::other(violation.to_string()))?;
+        }
+        let (before, after) = (fitted.faces.len(), fitted.filling.face_count());
+        let words = format!("{before} faces become {after}");
+        Ok(Done { words, refills: vec![fitted], ..Done::default() })
+    }
+}
+
+/// Puts every vertex where it is said to be.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Place {
+    /// A point for each vertex, in the order of the file that is written.
+    points: Vec<[f64; 3]>,
+}
+
+impl Operation for Place {
+    fn run(&self, session: &mut Session, _: &dyn Watch) -> Result<Done, Trouble> {
+        let mesh = session.mesh_mut();
+        let vertices: Vec<Vertex> = mesh.vertices().filter(|&v| !mesh.is_face(v)).collect();
+        let (given, needed) = (self.points.len(), vertices.len());
+        if given != needed {
+            let words = format!("the mesh has {needed} vertices now, and there are {given} points");
+            return Err(Trouble::other(words));
+        }
+        if let Some(i) = self.points.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
+            return Err(Trouble::other(format!("point {} is not finite", i + 1)));
+        }
+        for (v, &point) in vertices.into_iter().zip(&self.points) {
+            mesh.set_position(v, Point::from(point));
+        }
+        Ok(Done { words: format!("{given} vertices"), ..Done::default() })
     }
 }

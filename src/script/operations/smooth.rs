@@ -21,9 +21,9 @@ impl Operation for Smooth {
     fn run(&self, session: &mut Session, watch: &dyn Watch) -> Result<Done, Trouble> {
         let lowered = lower(session.mesh(), session.group_names)
             .map_err(|error| Trouble::other(error.to_string()))?;
-        let iterations = self.iterations.unwrap_or(session.smooth.iterations);
-        let options = SmoothOptions { iterations, ..session.smooth.clone() };
-        let settings = (&options, session.relax);
+        let iterations = self.iterations.unwrap_or(session.config.smooth.iterations);
+        let options = SmoothOptions { iterations, ..session.config.smooth.clone() };
+        let settings = (&options, &session.config.relax);
         let (points, report) =
             smooth(&lowered.mesh, &lowered.held, session.reference, settings, None, watch);
         for (&v, point) in lowered.vertex_ids.iter().zip(points) {
