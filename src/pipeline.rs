@@ -106,7 +106,7 @@ pub fn clean(
     watch.progress(Phase::Measure, 0, 2, None);
     let target = Target::new(surface, &config.measure)?;
     let before = measure(&raw, Some(&target))?;
-    let (mut q, feature_edges, schedule) = edit(&mesh, surface, config, watch)?;
+    let (mut q, feature_edges, schedule) = edit((&mesh, raw.face_count()), surface, config, watch)?;
     q.commit();
     let result = lower(&q, mesh.group_names())?.mesh;
     check(&result).map_err(CleanError::Flawed)?;
@@ -136,14 +136,16 @@ pub fn plan(
     config: &Config,
     watch: &dyn Watch,
 ) -> Result<Planned, CleanError> {
+    let faces = mesh.face_count();
     let (mesh, _) = mend(mesh, policy)?;
-    let (q, _, schedule) = edit(&mesh, reference.unwrap_or(&mesh), config, watch)?;
+    let (q, _, schedule) = edit((&mesh, faces), reference.unwrap_or(&mesh), config, watch)?;
     Ok(Planned { edits: schedule.edits, mesh: lower(&q, mesh.group_names())?.mesh })
 }
 
-/// Lifts, plans, edits and smooths; also the number of feature edges.
+/// Lifts, plans, edits and smooths a mended mesh that had so many faces before; also the number of
+/// feature edges.
 fn edit(
-    mesh: &PolyMesh,
+    (mesh, faces): (&PolyMesh, usize),
     surface: &PolyMesh,
     config: &Config,
     watch: &dyn Watch,
@@ -157,6 +159,7 @@ fn edit(
         reference: &reference,
         orientation: smooth::orientation(mesh, &reference),
         budget,
+        faces,
         mean_edge: mean_edge(mesh, &topology),
         plan: &config.plan,
         costs: &config.cost,

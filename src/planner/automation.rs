@@ -21,6 +21,8 @@ pub struct Automation<'a> {
     pub orientation: Orientation,
     /// How far the mesh may be from it, in units of the file.
     pub budget: Budget,
+    /// Number of faces of the input as it was read.
+    pub faces: usize,
     /// Mean length of the edges of the input, in units of the file.
     pub mean_edge: f64,
     /// How edits are searched for.
@@ -47,8 +49,9 @@ impl Automation<'_> {
     /// far as it got.
     pub fn run(&self, mesh: &mut QuadMesh, watch: &dyn Watch) -> Result<Schedule, MeshError> {
         let faces = mesh.vertices().filter(|&v| mesh.is_face(v)).count();
-        let start = faces as i64;
-        let mut schedule = Schedule::new(Size { start, now: start, drift: self.plan.size_drift });
+        let size =
+            Size { start: self.faces as i64, now: faces as i64, drift: self.plan.size_drift };
+        let mut schedule = Schedule::new(size);
         let mut contact = Contact::new(self.reference, faces);
         contact.attach(mesh, self.reference)?;
         let floor = contact.probe_count() as f64 * self.budget.rms.powi(2);
