@@ -263,7 +263,6 @@ fn a_messed_up_shape_becomes_clean() {
         ("disk", disk(), 4, 20),
         ("disk", disk(), 5, 40),
     ];
-    let mut relocations = 0;
     for (name, (regular, reference), seed, edits) in cases {
         let mut q = lifted(&regular);
         mess_up(&mut q, &mut Dice(seed), edits);
@@ -283,10 +282,8 @@ fn a_messed_up_shape_becomes_clean() {
         for edit in cleaned.report.edits.iter().filter(|e| matches!(e.edit, Edit::Refill(_))) {
             let pays = edit.gain > 0 || edit.angle_growth_deg <= -config.plan.relocation_saves;
             assert!(pays, "{name} {seed}: a refill for nothing");
-            relocations += usize::from(edit.gain == 0);
         }
     }
-    assert!(relocations > 0, "what stays is moved to where it fits better");
 }
 
 /// Without a reference the input is the surface to stay on.
