@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use quadmend::io;
-use quadmend::mesh::MendPolicy;
 use quadmend::pipeline::{Report, clean};
 use quadmend::report::Timing;
 use quadmend::watch::{Phase, Watch};
@@ -15,7 +14,7 @@ use super::failure::Failure;
 use super::limits::{self, Limit};
 use super::look::Look;
 use super::paths::{self, is_stream};
-use super::settings::{Running, Settings};
+use super::source::{Begun, Source};
 use super::{output, pictures, summary};
 
 const EXAMPLES: &str = "\
@@ -36,22 +35,10 @@ goes to standard output, or to standard error if standard output takes the mesh 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Clean {
-    /// The mesh to clean, polygons of any degree (OBJ, - for standard input)
-    input: PathBuf,
-
     /// Where the cleaned mesh goes (OBJ, - for standard output); an older file is replaced when
     /// the new one is complete, but never an input unless --force is given
     #[arg(short, long, value_name = "MESH")]
     output: PathBuf,
-
-    /// Surface to stay on, usually the scan that was remeshed, in the same position and scale
-    /// (OBJ, - for standard input) [default: the input]
-    #[arg(short, long, value_name = "MESH")]
-    reference: Option<PathBuf>,
-
-    /// Refuse a mesh that has anything to mend, instead of mending it [default: mend and tell]
-    #[arg(long)]
-    strict: bool,
 
     /// Write the report as JSON: metrics before and after, mends, edits (- for standard output)
     /// [default: none]
@@ -74,38 +61,27 @@ pub(super) struct Clean {
     #[arg(long, value_name = "DIR")]
     pictures: Option<PathBuf>,
 
-    /// Allow an output to replace an input
-    #[arg(long)]
-    force: bool,
-
     /// Exit with code 4 if a metric of the result is beyond a limit, for example
     /// `irregular_elements>100` or `scaled_jacobian_min<0.1`; names and units are those of
     /// `quadmend metrics --json`; may be repeated [default: no limit]
     #[arg(long, value_name = "LIMIT")]
     fail_if: Vec<Limit>,
 
+    // Before what has a heading of its own: a heading holds for all that follows.
+    #[command(flatten)]
+    source: Source,
+
     #[command(flatten)]
     look: Look,
-
-    #[command(flatten)]
-    settings: Settings,
-
-    #[command(flatten)]
-    running: Running,
 }
 
 impl Clean {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
         self.check_paths()?;
-        let config = self.settings.load()?;
-        let progress = self.running.start()?;
-        progress.progress(Phase::Read, 0, 1, None);
-        let input = progress.load(&self.input)?;
-        let reference = self.reference.as_deref().map(|path| progress.load(path)).transpose()?;
-        let policy = if self.strict { MendPolicy::Strict } else { MendPolicy::Mend };
-        let surface = reference.as_ref().map(|loaded| &loaded.mesh);
-        let cleaned = clean(input.mesh.clone(), surface, policy, &config, &progress)
-            .map_err(|e| Failure::of_file(&paths::shown(&self.input), e))?;
+        let begun = self.source.begin()?;
+        let Begun { progress, config, input, policy, .. } = &begun;
+        let cleaned = clean(input.mesh.clone(), begun.surface(), *policy, config, progress)
+            .map_err(|e| self.source.failure(e))?;
         progress.progress(Phase::Write, 0, 1, None);
         io::write(&self.output, &cleaned.mesh)?;
         if let Some(path) = &self.json {
@@ -115,23 +91,23 @@ impl Clean {
             output::file(path, &output::log(&cleaned.report.edits, &cleaned.mesh)?)?;
         }
         if self.pictures.is_some() || self.report.is_some() {
-            let shown = Aftermath::new((&input, reference.as_ref()), &cleaned, &config);
+            let shown = Aftermath::new((input, begun.reference.as_ref()), &cleaned, config);
             self.show(&shown, progress.timings())?;
         }
-        progress.finish();
+        begun.progress.finish();
         self.tell(&cleaned.report)?;
         Ok(limits::check(&self.fail_if, &cleaned.report.after, summary::exit(&cleaned.report)))
     }
 
     /// Pictures and the report for people.
     fn show(&self, shown: &Aftermath, timings: Vec<Timing>) -> Result<(), Failure> {
-        let names = [&self.input, &self.output].map(|path| paths::short_name(path));
+        let names = [&self.source.input, &self.output].map(|path| paths::short_name(path));
         if let Some(folder) = &self.pictures {
             pictures::write(folder, &self.look, &shown.pair(&names))?;
         }
         if let Some(path) = &self.report {
-            let files = [&self.input, &self.output].map(|path| paths::shown(path));
-            let reference = self.reference.as_deref().map(paths::shown);
+            let files = [&self.source.input, &self.output].map(|path| paths::shown(path));
+            let reference = self.source.reference.as_deref().map(paths::shown);
             output::file(path, &shown.html((names, files, reference), timings))?;
         }
         Ok(())
@@ -139,11 +115,7 @@ impl Clean {
 
     /// Everything that can be found wrong before the work is found before the work.
     fn check_paths(&self) -> Result<(), Failure> {
-        let meshes: Vec<&Path> =
-            std::iter::once(&*self.input).chain(self.reference.as_deref()).collect();
-        let others = self.other_outputs();
-        let outputs = (&*self.output, others.as_slice());
-        paths::check(&meshes, self.settings.config.as_deref(), outputs, self.force)?;
+        self.source.check_paths(None, Some(&self.output), &self.other_outputs())?;
         if self.pictures.is_none() && !self.look.is_plain() {
             return Err(Failure::usage("options of pictures need a folder: --pictures DIR"));
         }
@@ -157,7 +129,7 @@ impl Clean {
     }
 
     fn tell(&self, report: &Report) -> Result<(), Failure> {
-        if self.running.quiet {
+        if self.source.quiet() {
             return Ok(());
         }
         output::note(summary::work(report).trim_end());

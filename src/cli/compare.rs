@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use quadmend::elements::Inspection;
-use quadmend::io;
 use quadmend::metrics::{METRICS, Metrics, table};
 use quadmend::report::{Document, Entry};
 use quadmend::surface::Reference;
@@ -13,7 +12,8 @@ use serde_json::json;
 use super::Exit;
 use super::failure::Failure;
 use super::measuring::{Measurements, Measuring};
-use super::{output, paths};
+use super::output;
+use super::paths::{self, Files};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -71,12 +71,12 @@ impl Compare {
     }
 
     fn check_paths(&self, files: &[&Path]) -> Result<(), Failure> {
-        let settings = self.measuring.settings.config.as_deref();
-        let reference = self.measuring.reference.as_deref();
-        let inputs: Vec<&Path> = files.iter().copied().chain(reference).chain(settings).collect();
-        let Some(report) = self.report.as_deref() else { return Ok(()) };
-        paths::keep_apart(&inputs, &[report], self.force)?;
-        Ok(io::check_place(report)?)
+        let texts = self.measuring.settings.config.as_deref();
+        let meshes: Vec<&Path> =
+            files.iter().copied().chain(self.measuring.reference.as_deref()).collect();
+        let (texts, others) = (texts.as_slice(), self.report.as_deref());
+        let others = others.as_slice();
+        Files { meshes: &meshes, texts, output: None, others, force: self.force }.check()
     }
 
     fn text(&self, files: &[&Path], measured: &Measurements) -> Result<String, Failure> {

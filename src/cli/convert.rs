@@ -1,19 +1,18 @@
 //! `quadmend convert`: the same surface as another kind of mesh.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use quadmend::io;
-use quadmend::mesh::{MendPolicy, MeshError, PolyMesh, mend};
+use quadmend::mesh::{MeshError, PolyMesh, mend};
 use quadmend::metrics::table;
 use quadmend::pipeline::pure_quad::{Report, pure_quad};
 use quadmend::views::{Label, View, catmull_clark, dual, primal, sqrt_cc};
 use quadmend::watch::{Phase, Watch};
 
 use super::failure::Failure;
-use super::paths::{self, is_stream};
-use super::progress::Progress;
-use super::settings::{Running, Settings};
+use super::paths::is_stream;
+use super::source::{Begun, Source};
 use super::{Exit, output};
 
 const EXAMPLES: &str = "\
@@ -34,9 +33,6 @@ would be faces beyond a boundary grey (as colours of the vertices, which Blender
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Convert {
-    /// The mesh to convert (OBJ, - for standard input)
-    input: PathBuf,
-
     /// What to convert it to
     #[arg(long, value_name = "KIND")]
     to: Kind,
@@ -44,11 +40,6 @@ pub(super) struct Convert {
     /// Where the result goes (OBJ, - for standard output); never an input unless --force is given
     #[arg(short, long, value_name = "MESH")]
     output: PathBuf,
-
-    /// For pure-quad: surface to stay on, in the same position and scale (OBJ, - for standard
-    /// input) [default: the input]
-    #[arg(short, long, value_name = "MESH")]
-    reference: Option<PathBuf>,
 
     /// For primal: what the first vertex of each component stands for [default: p]
     #[arg(long, value_name = "LABEL")]
@@ -58,19 +49,8 @@ pub(super) struct Convert {
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 
-    /// Refuse a mesh that has anything to mend, instead of mending it [default: mend and tell]
-    #[arg(long)]
-    strict: bool,
-
-    /// Allow an output to replace an input
-    #[arg(long)]
-    force: bool,
-
     #[command(flatten)]
-    settings: Settings,
-
-    #[command(flatten)]
-    running: Running,
+    source: Source,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -98,44 +78,34 @@ enum First {
 impl Convert {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
         self.check_arguments()?;
-        let progress = self.running.start()?;
-        progress.progress(Phase::Read, 0, 1, None);
-        let mesh = progress.read(&self.input)?;
+        let begun = self.source.begin()?;
         match self.to {
-            Kind::PureQuad => self.pure_quad(mesh, progress),
-            kind => self.view(mesh, kind, &progress),
+            Kind::PureQuad => self.pure_quad(begun),
+            kind => self.view(begun, kind),
         }
     }
 
     fn check_arguments(&self) -> Result<(), Failure> {
-        if self.to != Kind::PureQuad && (self.reference.is_some() || self.json.is_some()) {
+        if self.to != Kind::PureQuad && (self.source.reference.is_some() || self.json.is_some()) {
             return Err(Failure::usage("--reference and --json are for `--to pure-quad` only"));
         }
         if self.to != Kind::Primal && self.first.is_some() {
             return Err(Failure::usage("--first is for `--to primal` only"));
         }
-        let meshes: Vec<&Path> =
-            std::iter::once(&*self.input).chain(self.reference.as_deref()).collect();
         let json = self.json.as_deref();
-        let outputs = (&*self.output, json.as_slice());
-        paths::check(&meshes, self.settings.config.as_deref(), outputs, self.force)
+        self.source.check_paths(None, Some(&self.output), json.as_slice())
     }
 
-    fn policy(&self) -> MendPolicy {
-        if self.strict { MendPolicy::Strict } else { MendPolicy::Mend }
-    }
-
-    fn pure_quad(&self, mesh: PolyMesh, progress: Progress) -> Result<Exit, Failure> {
-        let config = self.settings.load()?;
-        let reference = self.reference.as_deref().map(|path| progress.read(path)).transpose()?;
-        let converted = pure_quad(mesh, reference.as_ref(), self.policy(), &config, &progress)
-            .map_err(|e| self.failure(e))?;
-        progress.progress(Phase::Write, 0, 1, None);
+    fn pure_quad(&self, begun: Begun) -> Result<Exit, Failure> {
+        let (mesh, surface) = (begun.input.mesh.clone(), begun.surface());
+        let converted = pure_quad(mesh, surface, begun.policy, &begun.config, &begun.progress)
+            .map_err(|e| self.source.failure(e))?;
+        begun.progress.progress(Phase::Write, 0, 1, None);
         io::write(&self.output, &converted.mesh)?;
         if let Some(path) = &self.json {
             output::file(path, &output::json(&converted.report)?)?;
         }
-        progress.finish();
+        begun.progress.finish();
         self.tell(&converted.report)?;
         Ok(exit(&converted.report))
     }
@@ -149,7 +119,7 @@ impl Convert {
         if others > 0 {
             output::note(&format!("not a quad: {others} faces for which no way was found"));
         }
-        if self.running.quiet {
+        if self.source.quiet() {
             return Ok(());
         }
         for mend in &report.mends.mends {
@@ -166,24 +136,22 @@ impl Convert {
         output::table(&table, taken)
     }
 
-    fn view(&self, mesh: PolyMesh, kind: Kind, progress: &Progress) -> Result<Exit, Failure> {
+    fn view(&self, begun: Begun, kind: Kind) -> Result<Exit, Failure> {
+        let mesh = begun.input.mesh;
         if kind == Kind::Primal {
             let first = if self.first == Some(First::D) { Label::Face } else { Label::Vertex };
-            io::write(&self.output, &primal(&mesh, first).map_err(|e| self.failure(e))?)?;
+            let mesh = primal(&mesh, first).map_err(|e| self.source.failure(e))?;
+            io::write(&self.output, &mesh)?;
             return Ok(Exit::Done);
         }
-        let (mesh, mends) = mend(mesh, self.policy()).map_err(|e| self.failure(e))?;
+        let (mesh, mends) = mend(mesh, begun.policy).map_err(|e| self.source.failure(e))?;
         for mend in &mends.mends {
-            progress.tell(&format!("mended: {}", mend.sentence));
+            begun.progress.tell(&format!("mended: {}", mend.sentence));
         }
-        let View { mesh, labels } = domain(kind)(&mesh).map_err(|e| self.failure(e))?;
+        let View { mesh, labels } = domain(kind)(&mesh).map_err(|e| self.source.failure(e))?;
         let colours: Vec<[f64; 3]> = labels.into_iter().map(Label::colour).collect();
         io::write_coloured(&self.output, &mesh, &colours)?;
         Ok(Exit::Done)
-    }
-
-    fn failure(&self, error: impl std::error::Error + Send + Sync + 'static) -> Failure {
-        Failure::of_file(&paths::shown(&self.input), error)
     }
 }
 

@@ -1,18 +1,17 @@
 //! `quadmend edit`: chosen edits, one after the other, from a script.
 
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use quadmend::io;
-use quadmend::mesh::MendPolicy;
 use quadmend::script::{Edited, OPERATIONS, Script, StepError, StepRecord, edit};
 use quadmend::watch::{Phase, Watch};
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::settings::{Running, Settings};
-use super::{Exit, output, paths};
+use super::source::Source;
+use super::{Exit, output};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -46,9 +45,6 @@ A path is a list of addresses that it leads through: path = [{ face = 7 }, { ver
 #[derive(Debug, Args)]
 #[command(after_help = help())]
 pub(super) struct Edit {
-    /// The mesh to edit, polygons of any degree (OBJ, - for standard input)
-    input: PathBuf,
-
     /// The list of edits (TOML)
     #[arg(short, long, value_name = "FILE")]
     script: PathBuf,
@@ -58,11 +54,6 @@ pub(super) struct Edit {
     #[arg(short, long, value_name = "MESH", required_unless_present = "dry_run")]
     output: Option<PathBuf>,
 
-    /// Surface to stay on when smoothing, in the same position and scale (OBJ, - for standard
-    /// input) [default: the input]
-    #[arg(short, long, value_name = "MESH")]
-    reference: Option<PathBuf>,
-
     #[command(flatten)]
     caution: Caution,
 
@@ -70,19 +61,8 @@ pub(super) struct Edit {
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 
-    /// Refuse a mesh that has anything to mend, instead of mending it [default: mend]
-    #[arg(long)]
-    strict: bool,
-
-    /// Allow an output to replace an input
-    #[arg(long)]
-    force: bool,
-
     #[command(flatten)]
-    settings: Settings,
-
-    #[command(flatten)]
-    running: Running,
+    source: Source,
 }
 
 /// What becomes of a script that does not go through.
@@ -107,20 +87,16 @@ struct Log<'a> {
 impl Edit {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
         self.check_paths()?;
-        let config = self.settings.load()?;
         let script = self.read_script()?;
-        let progress = self.running.start()?;
-        progress.progress(Phase::Read, 0, 1, None);
-        let mesh = progress.read(&self.input)?;
-        let reference = self.reference.as_deref().map(|path| progress.read(path)).transpose()?;
-        let policy = if self.strict { MendPolicy::Strict } else { MendPolicy::Mend };
-        let options = (&config, self.caution.keep_going);
-        let edited = edit(mesh, reference.as_ref(), policy, &script, options, &progress)?;
+        let begun = self.source.begin()?;
+        let options = (&begun.config, self.caution.keep_going);
+        let (mesh, surface) = (begun.input.mesh.clone(), begun.surface());
+        let edited = edit(mesh, surface, begun.policy, &script, options, &begun.progress)?;
         if let Some(path) = self.output.as_ref().filter(|_| !self.caution.dry_run) {
-            progress.progress(Phase::Write, 0, 1, None);
+            begun.progress.progress(Phase::Write, 0, 1, None);
             io::write(path, &edited.mesh)?;
         }
-        progress.finish();
+        begun.progress.finish();
         self.tell(&edited)?;
         Ok(if edited.steps.is_empty() { Exit::NothingToImprove } else { Exit::Done })
     }
@@ -134,22 +110,12 @@ impl Edit {
 
     /// Everything that can be found wrong before the work is found before the work.
     fn check_paths(&self) -> Result<(), Failure> {
-        let path = PathBuf::as_path;
-        let meshes: Vec<&Path> =
-            [Some(&self.input), self.reference.as_ref()].into_iter().flatten().map(path).collect();
-        paths::read_stdin_once(&meshes)?;
-        let config = self.settings.config.as_deref();
-        let inputs: Vec<&Path> =
-            meshes.into_iter().chain(config).chain([self.script.as_path()]).collect();
-        let outputs: Vec<&Path> =
-            [&self.output, &self.json].into_iter().flatten().map(path).collect();
-        paths::keep_apart(&inputs, &outputs, self.force)?;
-        self.output.as_deref().map_or(Ok(()), io::check_output)?;
-        Ok(self.json.as_deref().map_or(Ok(()), io::check_place)?)
+        let json = self.json.as_deref();
+        self.source.check_paths(Some(&self.script), self.output.as_deref(), json.as_slice())
     }
 
     fn tell(&self, edited: &Edited) -> Result<(), Failure> {
-        if !self.running.quiet {
+        if !self.source.quiet() {
             output::note(log(edited).trim_end());
         }
         let Some(path) = &self.json else { return Ok(()) };

@@ -26,6 +26,7 @@ mod plan;
 mod progress;
 mod render;
 mod settings;
+mod source;
 mod summary;
 
 use std::process::ExitCode;

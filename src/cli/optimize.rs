@@ -1,18 +1,17 @@
 //! `quadmend optimize`: planar or equiangular faces on the connectivity that is there.
 
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use quadmend::io;
-use quadmend::mesh::MendPolicy;
 use quadmend::optimize;
 use quadmend::pipeline::optimize::{Report, State, optimize};
 use quadmend::watch::{Phase, Watch};
 
 use super::failure::Failure;
-use super::paths::{self, is_stream};
-use super::settings::{Running, Settings};
+use super::paths::is_stream;
+use super::source::Source;
 use super::{Exit, output};
 
 const EXAMPLES: &str = "\
@@ -30,9 +29,6 @@ mean angle of the face.";
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Optimize {
-    /// The mesh to optimise (OBJ, - for standard input)
-    input: PathBuf,
-
     /// What to optimise
     #[arg(long)]
     goal: Goal,
@@ -41,28 +37,12 @@ pub(super) struct Optimize {
     #[arg(short, long, value_name = "MESH")]
     output: PathBuf,
 
-    /// Surface to stay near, in the same position and scale (OBJ, - for standard input)
-    /// [default: the input]
-    #[arg(short, long, value_name = "MESH")]
-    reference: Option<PathBuf>,
-
     /// Write the report as JSON (- for standard output) [default: none]
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 
-    /// Refuse a mesh that has anything to mend, instead of mending it [default: mend and tell]
-    #[arg(long)]
-    strict: bool,
-
-    /// Allow an output to replace an input
-    #[arg(long)]
-    force: bool,
-
     #[command(flatten)]
-    settings: Settings,
-
-    #[command(flatten)]
-    running: Running,
+    source: Source,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -76,38 +56,31 @@ enum Goal {
 impl Optimize {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
         self.check_paths()?;
-        let config = self.settings.load()?;
-        let progress = self.running.start()?;
-        progress.progress(Phase::Read, 0, 1, None);
-        let mesh = progress.read(&self.input)?;
-        let reference = self.reference.as_deref().map(|path| progress.read(path)).transpose()?;
-        let policy = if self.strict { MendPolicy::Strict } else { MendPolicy::Mend };
+        let begun = self.source.begin()?;
         let goal = match self.goal {
             Goal::Planar => optimize::Goal::Planar,
             Goal::Angles => optimize::Goal::Angles,
         };
-        let done = optimize(mesh, reference.as_ref(), goal, policy, &config, &progress)
-            .map_err(|e| Failure::of_file(&paths::shown(&self.input), e))?;
-        progress.progress(Phase::Write, 0, 1, None);
+        let (mesh, surface) = (begun.input.mesh.clone(), begun.surface());
+        let done = optimize(mesh, surface, goal, begun.policy, &begun.config, &begun.progress)
+            .map_err(|e| self.source.failure(e))?;
+        begun.progress.progress(Phase::Write, 0, 1, None);
         io::write(&self.output, &done.mesh)?;
         if let Some(path) = &self.json {
             output::file(path, &output::json(&done.report)?)?;
         }
-        progress.finish();
+        begun.progress.finish();
         self.tell(&done.report)?;
         Ok(Exit::Done)
     }
 
     fn check_paths(&self) -> Result<(), Failure> {
-        let meshes: Vec<&Path> =
-            std::iter::once(&*self.input).chain(self.reference.as_deref()).collect();
         let json = self.json.as_deref();
-        let outputs = (&*self.output, json.as_slice());
-        paths::check(&meshes, self.settings.config.as_deref(), outputs, self.force)
+        self.source.check_paths(None, Some(&self.output), json.as_slice())
     }
 
     fn tell(&self, report: &Report) -> Result<(), Failure> {
-        if self.running.quiet {
+        if self.source.quiet() {
             return Ok(());
         }
         for mend in &report.mends.mends {

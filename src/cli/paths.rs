@@ -11,20 +11,30 @@ pub(super) fn is_stream(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Finds what is wrong with the paths of a command that makes a mesh and perhaps reports, before
-/// the work is done.
-pub(super) fn check(
-    meshes: &[&Path],
-    config: Option<&Path>,
-    (output, others): (&Path, &[&Path]),
-    force: bool,
-) -> Result<(), Failure> {
-    read_stdin_once(meshes)?;
-    let inputs: Vec<&Path> = meshes.iter().copied().chain(config).collect();
-    let outputs: Vec<&Path> = std::iter::once(output).chain(others.iter().copied()).collect();
-    keep_apart(&inputs, &outputs, force)?;
-    io::check_output(output)?;
-    Ok(others.iter().try_for_each(|path| io::check_place(path))?)
+/// The files of a command.
+pub(super) struct Files<'a> {
+    /// Meshes that are read.
+    pub(super) meshes: &'a [&'a Path],
+    /// Configuration and scripts.
+    pub(super) texts: &'a [&'a Path],
+    /// Where a mesh is written.
+    pub(super) output: Option<&'a Path>,
+    /// Where everything else is written.
+    pub(super) others: &'a [&'a Path],
+    /// Whether an output may replace an input.
+    pub(super) force: bool,
+}
+
+impl Files<'_> {
+    /// Finds what is wrong with them before the work is done.
+    pub(super) fn check(&self) -> Result<(), Failure> {
+        read_stdin_once(self.meshes)?;
+        let inputs: Vec<&Path> = self.meshes.iter().chain(self.texts).copied().collect();
+        let outputs: Vec<&Path> = self.output.iter().chain(self.others).copied().collect();
+        keep_apart(&inputs, &outputs, self.force)?;
+        self.output.map_or(Ok(()), io::check_output)?;
+        Ok(self.others.iter().try_for_each(|path| io::check_place(path))?)
+    }
 }
 
 /// Refuses to read standard input for two meshes.
@@ -36,7 +46,7 @@ pub(super) fn read_stdin_once(inputs: &[&Path]) -> Result<(), Failure> {
 }
 
 /// Refuses outputs that would replace an input, and two outputs in one place.
-pub(super) fn keep_apart(inputs: &[&Path], outputs: &[&Path], force: bool) -> Result<(), Failure> {
+fn keep_apart(inputs: &[&Path], outputs: &[&Path], force: bool) -> Result<(), Failure> {
     for (i, output) in outputs.iter().enumerate() {
         if outputs[..i].iter().any(|o| is_same(o, output)) {
             let shown = output.display();

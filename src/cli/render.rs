@@ -4,15 +4,15 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use quadmend::elements::Inspection;
-use quadmend::io;
 use quadmend::mesh::PolyMesh;
 use quadmend::surface::Reference;
 use quadmend::watch::{Phase, Watch};
 
 use super::failure::Failure;
 use super::look::{Look, Shown};
+use super::paths::{self, Files};
 use super::settings::{Running, Settings};
-use super::{Exit, output, paths};
+use super::{Exit, output};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -89,10 +89,8 @@ impl Render {
         }
         let meshes: Vec<&Path> =
             self.meshes.iter().chain(&self.reference).map(PathBuf::as_path).collect();
-        paths::read_stdin_once(&meshes)?;
-        let inputs: Vec<&Path> =
-            meshes.into_iter().chain(self.settings.config.as_deref()).collect();
-        paths::keep_apart(&inputs, &[&self.output], self.force)?;
-        Ok(io::check_place(&self.output)?)
+        let (texts, others) = (self.settings.config.as_deref(), [self.output.as_path()]);
+        let texts = texts.as_slice();
+        Files { meshes: &meshes, texts, output: None, others: &others, force: self.force }.check()
     }
 }
