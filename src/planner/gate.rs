@@ -104,14 +104,6 @@ pub fn shape_of(mesh: &QuadMesh, faces: impl Iterator<Item = Vertex>) -> Shape {
     shape
 }
 
-impl Shape {
-    /// Least scaled Jacobian of the quads.
-    #[must_use]
-    pub fn jacobian(&self) -> f64 {
-        self.jacobian
-    }
-}
-
 /// An edit that did not pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rejected {
@@ -373,6 +365,12 @@ impl Default for Shape {
 }
 
 impl Shape {
+    /// Least scaled Jacobian of the quads.
+    #[must_use]
+    pub fn jacobian(&self) -> f64 {
+        self.jacobian
+    }
+
     /// Whether there is nothing worse among the quads than in `other`, give or take a little.
     #[must_use]
     pub fn is_about_as_good_as(&self, other: &Self) -> bool {

@@ -217,12 +217,20 @@ impl Mending {
 /// it turns against the quad's area vector. 1 for other polygons.
 pub(super) fn scaled_jacobian(points: &[Point], face: &[u32]) -> f64 {
     let &[a, b, c, d] = face else { return 1.0 };
-    let p = [a, b, c, d].map(|v| points[v as usize]);
-    let Some(normal) = (p[2] - p[0]).cross(&(p[3] - p[1])).try_normalize(0.0) else { return -1.0 };
-    let at = |k: usize| {
-        let (u, v) = (p[(k + 1) % 4] - p[k], p[(k + 3) % 4] - p[k]);
-        let area = u.norm() * v.norm();
-        if area > 0.0 { u.cross(&v).dot(&normal) / area } else { -1.0 }
+    let [a, b, c, d] = [a, b, c, d].map(|v| points[v as usize]);
+    let normal = (c - a).cross(&(d - b)).try_normalize(0.0);
+    normal.map_or(-1.0, |unit| least_sine(points, face, &unit))
+}
+
+/// The least sine of a corner of a face, as seen along the unit vector `normal`; −1 where two
+/// corners coincide.
+pub(super) fn least_sine(points: &[Point], face: &[u32], normal: &Vector) -> f64 {
+    let n = face.len();
+    let p = |k: usize| points[face[k % n] as usize];
+    let sine = |k: usize| {
+        let (u, v) = (p(k + 1) - p(k), p(k + n - 1) - p(k));
+        let scale = u.norm() * v.norm();
+        if scale > 0.0 { u.cross(&v).dot(normal) / scale } else { -1.0 }
     };
-    (0..4).map(at).fold(f64::INFINITY, f64::min)
+    (0..n).map(sine).fold(f64::INFINITY, f64::min)
 }

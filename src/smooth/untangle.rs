@@ -7,7 +7,7 @@
 //! Jacobian of its faces (a compass search, as in *smart* Laplacian smoothing: Freitag 1997);
 //! nothing that is good is touched.
 
-use super::guard::scaled_jacobian;
+use super::guard::{least_sine, scaled_jacobian};
 use super::kernel::Kernel;
 use crate::mesh::{Point, PolyMesh, Vector};
 use crate::surface::Reference;
@@ -151,7 +151,7 @@ impl Site<'_> {
         let small = |&&f: &&u32| self.mesh.face(f as usize).len() <= 4;
         let quality = |&f: &u32| {
             let face = self.mesh.face(f as usize);
-            let p = |k: usize| points[face[k % face.len()] as usize];
+            let p = |k: usize| points[face[k] as usize];
             let area = if face.len() == 4 {
                 (p(2) - p(0)).cross(&(p(3) - p(1)))
             } else {
@@ -159,12 +159,7 @@ impl Site<'_> {
             };
             let along = if area.dot(normal) < 0.0 { -2.0 } else { 0.0 };
             let Some(unit) = area.try_normalize(0.0) else { return -2.0 };
-            let corner = |k: usize| {
-                let (u, w) = (p(k + 1) - p(k), p(k + face.len() - 1) - p(k));
-                let scale = u.norm() * w.norm();
-                if scale > 0.0 { u.cross(&w).dot(&unit) / scale } else { -1.0 }
-            };
-            along + (0..face.len()).map(corner).fold(f64::INFINITY, f64::min)
+            along + least_sine(points, face, &unit)
         };
         self.faces.iter().filter(small).map(quality).fold(f64::INFINITY, f64::min)
     }
