@@ -9,12 +9,14 @@ use crate::mesh::{Point, Vector};
 use crate::sqrtcc::{QuadMesh, Vertex};
 use nalgebra::{Point2, Vector2};
 use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
 use std::f64::consts::TAU;
 
 type Plane = Point2<f64>;
 
 /// Places for the new vertices of `filling` on the surface of the old patch. `mesh` is as it was
-/// before the patch is replaced. O(n · √n) sweeps and O(n²) lookups for n vertices.
+/// before the patch is replaced. O(√n) sweeps over n vertices, and O(1) for each lookup if the old
+/// vertices lie evenly in the disk.
 #[must_use]
 pub fn transport(mesh: &QuadMesh, region: &Region, filling: &Filling) -> Vec<Point> {
     let rim: Vec<Vertex> = region.rim.iter().map(|&h| mesh.target(h)).collect();
@@ -77,8 +79,16 @@ fn edges_of(filling: &Filling) -> Vec<Vec<u32>> {
 
 /// The old patch in the disk, cut into triangles around the middle of each face.
 struct OldPatch {
-    triangles: Vec<([Plane; 3], [Point; 3])>,
+    triangles: Vec<Triangle>,
+    /// Cells along each side of the square around the disk.
+    cells: usize,
+    /// Triangles by cell, in order; cell `c` has those from `first[c]` to `first[c + 1]`.
+    first: Vec<u32>,
+    listed: Vec<u32>,
 }
+
+/// A triangle in the disk and on the surface.
+type Triangle = ([Plane; 3], [Point; 3]);
 
 impl OldPatch {
     fn new(mesh: &QuadMesh, region: &Region, rim: &[Vertex], circle: &[Plane]) -> Self {
@@ -92,7 +102,7 @@ impl OldPatch {
         let at = tutte(circle, region.interior.len(), &neighbours);
         let mut triangles = Vec::with_capacity(4 * region.faces.len());
         for &f in &region.faces {
-            let corners: Vec<(Plane, Point)> = mesh
+            let corners: SmallVec<[(Plane, Point); 8]> = mesh
                 .neighbours(f)
                 .filter_map(|v| number.get(&v).map(|&i| (at[i as usize], mesh.position(v))))
                 .collect();
@@ -104,27 +114,75 @@ impl OldPatch {
                 triangles.push(([flat, a.0, b.0], [solid, a.1, b.1]));
             }
         }
-        Self { triangles }
+        let mut patch = Self { triangles, cells: 1, first: Vec::new(), listed: Vec::new() };
+        patch.sort_into_cells();
+        patch
     }
 
-    /// The point of the patch over `p`: in the triangle that contains it, or nearly does.
-    fn lift(&self, p: Plane) -> Point {
-        let mut best = (f64::NEG_INFINITY, Point::origin());
-        for (flat, solid) in &self.triangles {
-            let weights = barycentric(flat, p);
-            let inside = weights.iter().copied().fold(f64::INFINITY, f64::min);
-            if inside > best.0 {
-                let w = weights.map(|w| w.clamp(0.0, 1.0));
-                let sum: f64 = w.iter().sum();
-                let at: Vector = (0..3).map(|i| solid[i].coords * (w[i] / sum)).sum();
-                best = (inside, Point::from(at));
-                if inside >= 0.0 {
-                    break;
-                }
+    /// Lists the triangles whose box meets each cell.
+    fn sort_into_cells(&mut self) {
+        self.cells = (self.triangles.len() as f64).sqrt().ceil().max(1.0) as usize;
+        let cells = self.cells;
+        let covered = |(flat, _): &Triangle| {
+            let (low, high) =
+                (flat[0].inf(&flat[1]).inf(&flat[2]), flat[0].sup(&flat[1]).sup(&flat[2]));
+            let ([x0, y0], [x1, y1]) = (self.cell(low), self.cell(high));
+            (y0..=y1).flat_map(move |y| (x0..=x1).map(move |x| y * cells + x))
+        };
+        let mut first = vec![0; cells * cells + 1];
+        for c in self.triangles.iter().flat_map(covered) {
+            first[c + 1] += 1;
+        }
+        for c in 0..cells * cells {
+            first[c + 1] += first[c];
+        }
+        let mut listed = vec![0; first[cells * cells] as usize];
+        let mut next = first.clone();
+        for (triangle, i) in self.triangles.iter().zip(0..) {
+            for c in covered(triangle) {
+                listed[next[c] as usize] = i;
+                next[c] += 1;
             }
         }
-        best.1
+        (self.first, self.listed) = (first, listed);
     }
+
+    /// Column and row of the cell at `p`.
+    fn cell(&self, p: Plane) -> [usize; 2] {
+        let last = self.cells - 1;
+        [p.x, p.y].map(|x| ((0.5 * (x + 1.0) * self.cells as f64).max(0.0) as usize).min(last))
+    }
+
+    /// The point of the patch over `p`: in the first triangle that contains it, or else in that
+    /// which nearly does.
+    fn lift(&self, p: Plane) -> Point {
+        let [x, y] = self.cell(p);
+        let c = y * self.cells + x;
+        let near = &self.listed[self.first[c] as usize..self.first[c + 1] as usize];
+        let near = near.iter().map(|&i| &self.triangles[i as usize]);
+        let (inside, point) = lift_among(near, p);
+        if inside >= 0.0 { point } else { lift_among(self.triangles.iter(), p).1 }
+    }
+}
+
+/// How far inside (negative: outside) `p` is in the first of the triangles that contains it, or in
+/// the one that comes nearest to that, and the point on the surface.
+fn lift_among<'a>(triangles: impl Iterator<Item = &'a Triangle>, p: Plane) -> (f64, Point) {
+    let mut best = (f64::NEG_INFINITY, Point::origin());
+    for (flat, solid) in triangles {
+        let weights = barycentric(flat, p);
+        let inside = weights.iter().copied().fold(f64::INFINITY, f64::min);
+        if inside > best.0 {
+            let w = weights.map(|w| w.clamp(0.0, 1.0));
+            let sum: f64 = w.iter().sum();
+            let at: Vector = (0..3).map(|i| solid[i].coords * (w[i] / sum)).sum();
+            best = (inside, Point::from(at));
+            if inside >= 0.0 {
+                break;
+            }
+        }
+    }
+    best
 }
 
 fn barycentric([a, b, c]: &[Plane; 3], p: Plane) -> [f64; 3] {

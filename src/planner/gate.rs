@@ -156,20 +156,19 @@ pub struct Gate {
 const HOPES: [(f64, f64); 3] = [(4.0, 0.25), (1.5, 0.05), (1.0, 0.0)];
 
 impl Gate {
-    /// Judges what was done to `mesh` since `mark`, worth so many elements at λ degrees each.
+    /// Judges what was done to `mesh` since `mark`, which touched those vertices, worth so many elements at λ degrees each.
     /// The mesh is as before the edit afterwards: a caller that wants it makes it again.
     pub fn judge(
         &mut self,
         mesh: &mut QuadMesh,
-        mark: Mark,
+        (mark, touched): (Mark, &[Vertex]),
         (setting, contact): (&Setting, &Contact),
         (sweeps, worth, lambda): (u32, u32, f64),
     ) -> Result<Passed, Rejected> {
-        let touched = mesh.touched_since(mark);
-        self.gather(mesh, &touched, (setting, contact));
+        self.gather(mesh, touched, (setting, contact));
         // The patch holds a copy of the edited surroundings: the mesh can go back already.
         mesh.undo_to(mark);
-        let before = self.shape_before(mesh, &touched, (setting, contact));
+        let before = self.shape_before(mesh, touched, (setting, contact));
         let allowed = lambda * f64::from(worth);
         let too_steep = |growth: f64| Rejected {
             failure: Failure::Angles,
@@ -188,7 +187,7 @@ impl Gate {
         if after.jacobian < least || more {
             return Err(Failure::Jacobian.into());
         }
-        let growth = self.uncovered(&touched, (setting, contact)).ok_or(Failure::Distance)?;
+        let growth = self.uncovered(touched, (setting, contact)).ok_or(Failure::Distance)?;
         if self.leaves_surface(setting) || growth > setting.growth * f64::from(worth) {
             return Err(Failure::Distance.into());
         }

@@ -383,7 +383,7 @@ impl Worker {
         let faces_after = count_faces(&self.mesh, &touched);
         let judged = self.gate.judge(
             &mut self.mesh,
-            mark,
+            (mark, &touched),
             (&task.gate, context.contact),
             (sweeps, gain.max(1), task.lambda),
         );
