@@ -14,10 +14,12 @@ use quadmend::patch::fillings;
 use quadmend::pipeline;
 use quadmend::planner::cost::CostOptions;
 use quadmend::planner::edit::Edit;
+use quadmend::planner::global::groups;
 use quadmend::planner::local;
 use quadmend::planner::movement::{Cancellation, MovementGraph};
 use quadmend::sqrtcc::{QuadMesh, Vertex, lift, lower};
 use quadmend::watch::Silent;
+use rustc_hash::FxHashSet;
 
 /// Steps that a search goes.
 const REACH: u16 = 16;
@@ -298,4 +300,28 @@ fn a_mesh_is_cleaned_without_a_reference() {
         .unwrap_or_else(|e| panic!("{e}"));
     let (before, after) = (&cleaned.report.before.summary, &cleaned.report.after.summary);
     assert!(after.irregular_elements * 2 <= before.irregular_elements, "half of it at least");
+}
+
+#[test]
+fn the_global_plan_brings_opposite_burgers_vectors_together() {
+    let (mut one, mut two) = (0, 0);
+    for seed in 0..40 {
+        let mut q = lifted(&shapes::torus(24, 24));
+        let mut dice = Dice(seed);
+        let faraway: Vec<Vertex> = q.vertices().step_by(300).take(2).collect();
+        let [t_junction, _] = emit(&mut q, faraway[0]);
+        stroll(&mut q, t_junction, &mut dice, 24);
+        let found = groups(&q, 60, &FxHashSet::default());
+        one += usize::from(matches!(&found[..], [g] if g.gain == 4 && g.members.len() == 4));
+        // A second flip far away: each finds its own again.
+        emit(&mut q, faraway[1]);
+        let found = groups(&q, 60, &FxHashSet::default());
+        two += usize::from(found.len() == 2 && found.iter().all(|g| g.gain == 4));
+        // What was tried is not proposed again.
+        let tried = found.iter().map(|g| g.link).collect();
+        let again = groups(&q, 60, &tried);
+        assert!(again.iter().all(|g| !tried.contains(&g.link)));
+    }
+    // Now and then elements stand so close that no way leads between them.
+    assert!(one >= 38 && two >= 36, "{one} and {two} of 40");
 }

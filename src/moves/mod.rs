@@ -30,5 +30,6 @@ mod walk;
 pub use burgers::Displacement;
 pub use dipole::{Dipole, Step};
 pub use element::{Element, Kind};
-pub use path::{Path, Route};
+pub(crate) use path::quarters;
+pub use path::{Offset, Path, Route};
 pub use refusal::MoveRefusal;

@@ -41,6 +41,12 @@ impl Heading {
     pub const fn turned(self, quarters: i32) -> Self {
         Self::new(self.0 as i32 + quarters)
     }
+
+    /// Quarters counter-clockwise from the first edge, 0…3.
+    #[must_use]
+    pub const fn quarters(self) -> i32 {
+        self.0 as i32
+    }
 }
 
 /// A vector in the lattice of a path, in edges of Q.
@@ -171,6 +177,33 @@ impl Path {
         }
     }
 
+    /// The shortest paths to the irregular elements that are nearest to `from` by ways through
+    /// regular ones, at most `count` of them and at most `reach` edges long.
+    #[must_use]
+    pub fn nearest(mesh: &QuadMesh, from: Vertex, count: usize, reach: usize) -> Vec<Self> {
+        let mut reached = FxHashMap::default();
+        let (mut ends, mut queue) = (Vec::new(), VecDeque::from([(from, 0)]));
+        while let Some((v, length)) = queue.pop_front() {
+            if length == reach || ends.len() >= count {
+                break;
+            }
+            for h in mesh.outgoing(v) {
+                let next = mesh.target(h);
+                if next == from || reached.contains_key(&next) || mesh.is_ghost(next) {
+                    continue;
+                }
+                reached.insert(next, h);
+                if is_regular(mesh, next) {
+                    queue.push_back((next, length + 1));
+                } else if !mesh.is_held(next) || mesh.is_pin(next) {
+                    ends.push(next);
+                }
+            }
+        }
+        let way = |to| Self::along(mesh, trace(mesh, &reached, from, to));
+        ends.into_iter().filter(|&v| mesh.irregularity(v) > 0).map(way).collect()
+    }
+
     fn along(mesh: &QuadMesh, half_edges: Vec<HalfEdge>) -> Self {
         let mut headings = vec![Heading::default()];
         for pair in half_edges.windows(2) {
@@ -200,7 +233,7 @@ impl Path {
 }
 
 /// Steps counter-clockwise from one half-edge to another of the same origin.
-pub(super) fn quarters(mesh: &QuadMesh, from: HalfEdge, to: HalfEdge) -> i32 {
+pub(crate) fn quarters(mesh: &QuadMesh, from: HalfEdge, to: HalfEdge) -> i32 {
     let (mut h, mut count) = (from, 0);
     while h != to && count < mesh.valence(mesh.origin(from)) as i32 {
         h = mesh.ccw(h);

@@ -4,13 +4,17 @@ use super::PlanOptions;
 use super::contact::Contact;
 use super::cost::CostOptions;
 use super::gate::{GateOptions, Setting, shape_of};
+use super::global::{self, Group, Link};
 use super::schedule::Schedule;
 use super::worker::{Size, Stage, Task};
 use crate::mesh::MeshError;
+use crate::moves;
 use crate::smooth::{self, Budget, Orientation, RelaxOptions, SmoothOptions};
 use crate::sqrtcc::{QuadMesh, Vertex, lower};
 use crate::surface::{Reference, deviation};
 use crate::watch::Watch;
+use rustc_hash::FxHashSet;
+use std::collections::BTreeMap;
 
 /// What the automation works with and towards.
 #[derive(Debug, Clone, Copy)]
@@ -59,7 +63,7 @@ impl Automation<'_> {
         self.smooth(mesh, self.plan.smooth_between, watch)?;
         for i in 0..self.plan.stages {
             contact.attach(mesh, self.reference)?;
-            let (lambda, faces) = (self.plan.lambda(i), self.plan.patch_faces(i));
+            let (lambda, faces) = (self.plan.lambda(i), self.patch_faces(i));
             schedule.restart(allowed - contact.squared_distances());
             let refills = (Stage::Refills { faces }, lambda);
             for step in [(Stage::Moves, lambda), refills] {
@@ -73,6 +77,8 @@ impl Automation<'_> {
                     self.rounds((mesh, &mut contact), &mut schedule, step, watch);
                 }
             }
+            let groups = (Stage::Groups { faces }, lambda);
+            self.rounds((mesh, &mut contact), &mut schedule, groups, watch);
             if i + 1 < self.plan.stages {
                 self.smooth(mesh, self.plan.smooth_between, watch)?;
             }
@@ -84,6 +90,12 @@ impl Automation<'_> {
         self.release_pins(mesh);
         self.smooth(mesh, self.smooth.iterations, watch)?;
         Ok(schedule)
+    }
+
+    /// Most faces of a patch in stage `i`: no patch is most of the mesh.
+    fn patch_faces(&self, i: u32) -> usize {
+        let share = self.plan.patch_share * self.faces as f64;
+        self.plan.patch_faces(i).min(share as usize)
     }
 
     /// Lets the pins of quads that are still poor move: a crease is not worth a folded quad.
@@ -118,12 +130,19 @@ impl Automation<'_> {
             growth: GREED * schedule.slack().max(0.0) / mesh.total_irregularity().max(1) as f64,
             cover: (self.gate.cover_edges * self.mean_edge).min(self.hausdorff()),
         };
-        let task = Task { stage, lambda, plan: self.plan, costs: self.costs, gate };
         let rounds = match stage {
+            Stage::Groups { .. } => self.plan.global,
             Stage::Relocations { .. } => self.plan.relocations,
             _ => self.plan.rounds,
         };
+        let mut tried = FxHashSet::default();
         for _ in 0..rounds {
+            let groups = match stage {
+                Stage::Groups { .. } => groups(mesh, &mut tried),
+                _ => BTreeMap::new(),
+            };
+            let groups = &groups;
+            let task = Task { stage, lambda, groups, plan: self.plan, costs: self.costs, gate };
             if watch.cancelled() || !schedule.round((mesh, contact), &task, watch) {
                 return;
             }
@@ -166,4 +185,11 @@ impl Automation<'_> {
         mesh.commit();
         Ok(())
     }
+}
+
+/// The global plan for the mesh as it is, of what has not been tried; by first member.
+fn groups(mesh: &QuadMesh, tried: &mut FxHashSet<Link>) -> BTreeMap<Vertex, Group> {
+    let groups = global::groups(mesh, moves::path::REACH, tried);
+    tried.extend(groups.iter().map(|g| g.link));
+    groups.into_iter().filter_map(|g| Some((*g.members.first()?, g))).collect()
 }

@@ -40,6 +40,19 @@ impl Clusters {
         regions
     }
 
+    /// The convex disk around everything in `joined`, if its irregularity can fall.
+    pub fn joining(
+        &mut self,
+        mesh: &QuadMesh,
+        joined: &[Vertex],
+        limits: Limits,
+    ) -> Option<Region> {
+        self.grower.start(mesh);
+        joined.iter().for_each(|&v| self.grower.add(mesh, v));
+        let region = self.grower.convex(mesh, limits.faces).ok()?;
+        can_gain(&region, limits.least_gain).then_some(region)
+    }
+
     /// Adds the regions around the origin of `at` on the side of `at`.
     fn around_sector(
         &mut self,
@@ -54,7 +67,7 @@ impl Clusters {
             let known = regions
                 .iter()
                 .any(|r| r.rim.len() == region.rim.len() && r.faces.len() == region.faces.len());
-            if !known && least_after(&region) + limits.least_gain <= region.irregularity {
+            if !known && can_gain(&region, limits.least_gain) {
                 regions.push(region);
             }
         };
@@ -127,6 +140,10 @@ impl Clusters {
         }
         self.grower.convex(mesh, most).ok()
     }
+}
+
+fn can_gain(region: &Region, least: u32) -> bool {
+    least_after(region) + least <= region.irregularity
 }
 
 /// The least irregularity that a filling of the region can have, by its number of corners.

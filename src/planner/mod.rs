@@ -12,6 +12,7 @@ pub mod contact;
 pub mod cost;
 pub mod edit;
 pub mod gate;
+pub mod global;
 pub mod local;
 pub mod movement;
 pub mod schedule;
@@ -37,6 +38,8 @@ knobs! {
         relocations: u32 = 1, in 0.0..=1000.0, "count";
         /// What moving elements to a better place must save at least.
         relocation_saves: f64 = 40.0, in 0.0..=100_000.0, "degree-corners";
+        /// Most rounds of the global plan in each stage; 0 leaves the greedy one alone.
+        global: u32 = 30, in 0.0..=1000.0, "count";
         /// Irregular elements that are planned for in the same round are this far apart.
         spacing: u32 = 2, in 0.0..=100.0, "steps in Q";
         /// Most steps that a dislocation walks.
@@ -51,6 +54,8 @@ knobs! {
         patch_faces_first: u32 = 60, in 0.0..=100_000.0, "faces";
         /// Most faces of a patch in the last stage.
         patch_faces_last: u32 = 2000, in 0.0..=100_000.0, "faces";
+        /// Largest share of the faces of the input in a patch.
+        patch_share: f64 = 0.25, in 0.0..=1.0, "1";
         /// Fillings of a patch that are judged.
         fillings: u32 = 3, in 1.0..=20.0, "count";
         /// Largest |ln| of the number of faces over that of the input.

@@ -170,6 +170,9 @@ impl Schedule {
             }
             _ => self.failed.get(v).is_none_or(is_changed),
         };
+        if let Stage::Groups { .. } = task.stage {
+            return task.groups.keys().copied().collect();
+        }
         let irregular = mesh.vertices().filter(|&v| mesh.irregularity(v) > 0);
         let fresh: Vec<Vertex> = irregular.filter(fresh).collect();
         self.spacing.start(mesh);

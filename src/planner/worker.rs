@@ -5,6 +5,7 @@ use super::contact::Contact;
 use super::cost::CostOptions;
 use super::edit::{Edit, walk_terms};
 use super::gate::{Failure, Gate, Passed, Setting, Shape};
+use super::global::Group;
 use super::movement::MovementGraph;
 use super::{PlanOptions, local};
 use crate::mesh::Point;
@@ -13,6 +14,7 @@ use crate::ops::Op;
 use crate::patch::{Refill, Region, fillings};
 use crate::sqrtcc::{QuadMesh, Vertex};
 use rustc_hash::FxHashMap;
+use std::collections::BTreeMap;
 
 /// An edit that passed the gate, not yet made.
 #[derive(Debug, Clone)]
@@ -109,6 +111,11 @@ pub enum Stage {
         /// Most faces.
         faces: usize,
     },
+    /// Refills of patches of at most so many faces, each around a group of the global plan.
+    Groups {
+        /// Most faces.
+        faces: usize,
+    },
     /// Refills that leave as many elements, at places that suit the surface better. The exchange
     /// rate is negative: what must be saved.
     Relocations {
@@ -122,6 +129,8 @@ pub enum Stage {
 pub struct Task<'a> {
     /// What to look for.
     pub stage: Stage,
+    /// The groups of the global plan, by the member that stands for each.
+    pub groups: &'a BTreeMap<Vertex, Group>,
     /// Degrees of corner angle that an irregular element less may cost.
     pub lambda: f64,
     /// The knobs of the search.
@@ -206,6 +215,7 @@ impl Worker {
             Stage::Refills { faces } => {
                 self.propose_refill((seed, faces, 1), context, &mut outcome);
             }
+            Stage::Groups { faces } => self.propose_group((seed, faces), context, &mut outcome),
             Stage::Relocations { faces } => {
                 self.propose_refill((seed, faces, 0), context, &mut outcome);
             }
@@ -318,6 +328,31 @@ impl Worker {
         let partners = context.task.plan.partners as usize;
         let limits = Limits { faces, partners, least_gain };
         let regions = self.clusters.around(&self.mesh, seed, limits);
+        self.refill_first((seed, least_gain), regions, context, outcome);
+    }
+
+    /// A refill around a group of the global plan.
+    fn propose_group(
+        &mut self,
+        (seed, faces): (Vertex, usize),
+        context: Context,
+        outcome: &mut Outcome,
+    ) {
+        let Some(group) = context.task.groups.get(&seed) else { return };
+        let limits = Limits { faces, partners: 0, least_gain: 1 };
+        outcome.scope.extend(&group.ways);
+        let region = self.clusters.joining(&self.mesh, &group.ways, limits);
+        self.refill_first((seed, 1), region.into_iter().collect(), context, outcome);
+    }
+
+    /// The best refill of the first of the regions that has one.
+    fn refill_first(
+        &mut self,
+        (seed, least_gain): (Vertex, u32),
+        regions: Vec<Region>,
+        context: Context,
+        outcome: &mut Outcome,
+    ) {
         if let Some(largest) = regions.last() {
             outcome.scope.extend(largest.faces.iter().chain(&largest.interior));
         }
