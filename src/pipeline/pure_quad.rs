@@ -86,11 +86,25 @@ fn edit(
     let allowed = budget(mesh, &reference, (&config.gate, mean_edge(mesh, &topology)))?;
     let (mut q, feature_edges) = lift_held(mesh, &topology, &reference, &config.features)?;
     let surface = (&reference, orientation(mesh, &reference));
-    let Settled { conversion, touched } =
-        convert_settled(&mut q, Kind::Faces, surface, &config.relax, watch);
-    smooth_around(&mut q, &touched, (&reference, allowed), config, watch)?;
+    let conversion = convert_within(&mut q, surface, allowed, config, watch)?;
     q.commit();
     Ok((q, feature_edges, conversion))
+}
+
+/// Converts every face that is no quad, relaxes, and smooths around the changes.
+pub(super) fn convert_within(
+    q: &mut QuadMesh,
+    surface: (&Reference, Orientation),
+    allowed: Budget,
+    config: &Config,
+    watch: &dyn Watch,
+) -> Result<Conversion, MeshError> {
+    let Settled { conversion, touched } =
+        convert_settled(q, Kind::Faces, surface, &config.relax, watch);
+    if !conversion.ops.is_empty() {
+        smooth_around(q, &touched, (surface.0, allowed), config, watch)?;
+    }
+    Ok(conversion)
 }
 
 /// A conversion, and the vertices that it tried to change.
