@@ -188,7 +188,7 @@ fn edit(
     let mut conversion = None;
     if config.plan.pure_quad {
         let surface = (&reference, automation.orientation);
-        let done = pure_quad::convert_within(&mut q, surface, budget, config, watch)?;
+        let done = pure_quad::convert_cleaned(&mut q, surface, budget, config, watch)?;
         note_conversion(&mut schedule, &q, &done);
         conversion = Some(done);
     }

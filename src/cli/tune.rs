@@ -180,8 +180,11 @@ impl Tune {
         }
         let references: Vec<PathBuf> = files.iter().filter_map(|f| self.reference_of(f)).collect();
         let meshes: Vec<&Path> = files.iter().chain(&references).map(PathBuf::as_path).collect();
-        let texts: Vec<&Path> =
-            [&self.search, &self.settings.config].into_iter().flatten().map(PathBuf::as_path).collect();
+        let texts: Vec<&Path> = [&self.search, &self.settings.config]
+            .into_iter()
+            .flatten()
+            .map(PathBuf::as_path)
+            .collect();
         Files { meshes: &meshes, texts: &texts, output: None, others: &[], force: false }.check()
     }
 
@@ -209,9 +212,7 @@ fn matches(pattern: &str) -> Result<Vec<PathBuf>, Failure> {
     }
     let found = glob::glob(pattern)
         .map_err(|e| Failure::usage(format!("{pattern}: this is no pattern of files: {e}")))?;
-    found
-        .map(|file| file.map_err(|e| Failure::usage(format!("{pattern}: {e}"))))
-        .collect()
+    found.map(|file| file.map_err(|e| Failure::usage(format!("{pattern}: {e}")))).collect()
 }
 
 /// Where the reference of a mesh is looked for.

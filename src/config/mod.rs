@@ -143,9 +143,8 @@ impl Config {
         let (mut table, usual) = (self.table(), Self::default().table());
         for (name, section) in &mut table {
             if let Value::Table(section) = section {
-                section.retain(|key, value| {
-                    usual.get(name).and_then(|s| s.get(key)) != Some(&*value)
-                });
+                section
+                    .retain(|key, value| usual.get(name).and_then(|s| s.get(key)) != Some(&*value));
             }
         }
         table.retain(|_, section| section.as_table().is_some_and(|s| !s.is_empty()));

@@ -83,7 +83,8 @@ fn mixture(task: &Task, number: usize) -> Box<dyn Fn(&[f64]) -> f64> {
 /// Shares of a sum of 1 that go everywhere as `number` grows: gaps between the sorted fractional
 /// parts of multiples of irrational numbers.
 fn shares(count: usize, number: usize) -> Vec<f64> {
-    const STEPS: [f64; QUANTITIES.len() - 1] = [0.618_033_988_75, 0.414_213_562_37, 0.732_050_807_57];
+    const STEPS: [f64; QUANTITIES.len() - 1] =
+        [0.618_033_988_75, 0.414_213_562_37, 0.732_050_807_57];
     let mut cuts: Vec<f64> = STEPS
         .iter()
         .take(count.saturating_sub(1))

@@ -103,7 +103,11 @@ fn line(value: &impl Serialize) -> String {
 fn read(path: &Path, text: &str, head: &Head) -> Result<BTreeMap<usize, Trial>, TuneError> {
     let damaged = |number: usize| {
         let file = path.to_owned();
-        move |e: serde_json::Error| TuneError::DamagedJournal { file, line: number, message: e.to_string() }
+        move |e: serde_json::Error| TuneError::DamagedJournal {
+            file,
+            line: number,
+            message: e.to_string(),
+        }
     };
     let mut lines = (1..).zip(text.lines());
     if let Some((number, line)) = lines.next() {
@@ -129,7 +133,11 @@ fn difference(old: &Value, new: &Value) -> Option<String> {
             let (null, mut keys) = (Value::Null, keys);
             keys.find_map(|key| {
                 let inner = difference(a.get(key).unwrap_or(&null), b.get(key).unwrap_or(&null))?;
-                Some(if inner.starts_with(": ") { format!("{key}{inner}") } else { format!("{key}.{inner}") })
+                Some(if inner.starts_with(": ") {
+                    format!("{key}{inner}")
+                } else {
+                    format!("{key}.{inner}")
+                })
             })
         }
         _ if old == new => None,

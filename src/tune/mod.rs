@@ -10,7 +10,7 @@ mod choice;
 pub mod journal;
 pub mod objective;
 mod page;
-//mod plot;
+mod plot;
 mod search;
 pub mod space;
 pub mod task;
@@ -57,7 +57,9 @@ pub enum TuneError {
     #[error("the space has no knob: name one, as in `\"cost.step\" = {{ low = 0.1, high = 10 }}`")]
     NoKnob,
     /// What cannot be varied.
-    #[error("`{key}` is not a number that can be varied; name a knob with its section, as cost.step")]
+    #[error(
+        "`{key}` is not a number that can be varied; name a knob with its section, as cost.step"
+    )]
     NoNumber {
         /// What was named.
         key: String,

@@ -103,10 +103,10 @@ pub fn ratios(measures: &[Measures], start: &[Measures]) -> Vec<f64> {
 #[must_use]
 pub fn score(ratios: &[f64], weights: &Weights) -> f64 {
     let weights = QUANTITIES.iter().map(|q| (q.weight)(weights));
-    let (sum, total) = ratios
-        .iter()
-        .zip(weights)
-        .fold((0.0, 0.0), |(sum, total), (ratio, weight)| (sum + weight * ratio.ln(), total + weight));
+    let (sum, total) =
+        ratios.iter().zip(weights).fold((0.0, 0.0), |(sum, total), (ratio, weight)| {
+            (sum + weight * ratio.ln(), total + weight)
+        });
     (sum / total).exp()
 }
 

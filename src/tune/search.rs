@@ -173,11 +173,7 @@ impl Search<'_> {
     }
 
     /// Runs those trials that the journal does not hold, and takes all in; whether none is missing.
-    fn try_all(
-        &mut self,
-        trials: Vec<(usize, Vec<f64>)>,
-        always: bool,
-    ) -> Result<bool, TuneError> {
+    fn try_all(&mut self, trials: Vec<(usize, Vec<f64>)>, always: bool) -> Result<bool, TuneError> {
         let count = trials.len();
         let ended: Vec<Option<Trial>> = trials
             .into_par_iter()
@@ -201,8 +197,9 @@ impl Search<'_> {
         let mut trial = Trial { number, values, measures: Vec::new() };
         let config = configured(&self.findings.space, &self.findings.start, &trial)?;
         let pairs = self.cases.par_iter().zip(&self.targets);
-        trial.measures =
-            pairs.map(|(case, target)| measures(case, target, &config)).collect::<Result<_, _>>()?;
+        trial.measures = pairs
+            .map(|(case, target)| measures(case, target, &config))
+            .collect::<Result<_, _>>()?;
         self.journal().add(trial.clone())?;
         let start = self.findings.trials.first().map(|t| &t.trial.measures);
         let ratios = ratios(&trial.measures, start.unwrap_or(&trial.measures));

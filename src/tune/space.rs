@@ -81,7 +81,11 @@ impl Space {
         if ranges.is_empty() {
             return Err(TuneError::NoKnob);
         }
-        ranges.into_iter().map(|(key, range)| Dimension::new(key, range)).collect::<Result<_, _>>().map(Self)
+        ranges
+            .into_iter()
+            .map(|(key, range)| Dimension::new(key, range))
+            .collect::<Result<_, _>>()
+            .map(Self)
     }
 
     /// The values at a point of the unit cube.
