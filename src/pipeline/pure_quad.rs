@@ -93,7 +93,8 @@ fn edit(
     Ok((q, feature_edges, conversion))
 }
 
-/// Converts every face of a mesh that has been cleaned, and smooths all of it once more.
+/// Converts every face of a mesh that has been cleaned, and smooths first what has changed, which
+/// brings it back near the surface, and from there all of it.
 pub(super) fn convert_cleaned(
     q: &mut QuadMesh,
     surface: (&Reference, Orientation),
@@ -101,9 +102,12 @@ pub(super) fn convert_cleaned(
     config: &Config,
     watch: &dyn Watch,
 ) -> Result<Conversion, MeshError> {
-    let Settled { conversion, .. } = convert_settled(q, Kind::Faces, surface, &config.relax, watch);
+    let Settled { conversion, touched } =
+        convert_settled(q, Kind::Faces, surface, &config.relax, watch);
     if !conversion.ops.is_empty() {
-        smooth_within(q, None, (surface.0, allowed), config, watch)?;
+        for around in [Some(&*touched), None] {
+            smooth_within(q, around, (surface.0, allowed), config, watch)?;
+        }
     }
     Ok(conversion)
 }

@@ -10,7 +10,7 @@ use std::fmt::Write;
 const PAGE: &str = include_str!("page.html");
 
 /// Size of the large plots, and of those of single knobs.
-const LARGE: [f64; 2] = [560.0, 340.0];
+const LARGE: [f64; 2] = [440.0, 300.0];
 const SMALL: [f64; 2] = [320.0, 210.0];
 /// Trials in the table of the best.
 const LISTED: usize = 10;
