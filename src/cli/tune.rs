@@ -1,5 +1,6 @@
 //! `quadmend tune`: searches the configuration for what is best on some meshes.
 
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
@@ -293,7 +294,8 @@ fn told(findings: &Findings) -> String {
     let names: Vec<&str> = tune::objective::QUANTITIES.iter().map(|q| q.name).collect();
     let mut text = format!("{:<10} {:>8}", "trial", "score");
     for name in &names {
-        text += &format!(" {name:>10}");
+        // Writing to a string cannot fail.
+        let _ = write!(text, " {name:>10}");
     }
     let mut shown: Vec<(&str, &Judged)> = vec![("start", &findings.trials[0])];
     match findings.task.goal {
@@ -302,9 +304,9 @@ fn told(findings: &Findings) -> String {
     }
     for (what, judged) in shown {
         let name = format!("{what} {}", judged.trial.number);
-        text += &format!("\n{name:<10} {:>8.4}", judged.score);
+        let _ = write!(text, "\n{name:<10} {:>8.4}", judged.score);
         for ratio in &judged.ratios {
-            text += &format!(" {ratio:>10.3}");
+            let _ = write!(text, " {ratio:>10.3}");
         }
     }
     text + "\nAll relative to the start, over all meshes; less is better.\n"

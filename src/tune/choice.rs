@@ -17,6 +17,9 @@ use parzen::{
 /// the front, too.
 const SUM: f64 = 0.05;
 
+/// What is made as small as possible, of measures relative to the start.
+type Mixture = dyn Fn(&[f64]) -> f64;
+
 /// A trial that is over: where it was in the unit cube, and its measures relative to the start.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Told {
@@ -42,7 +45,7 @@ fn chosen(
     seed: u64,
     (dimensions, count): (usize, usize),
     told: &[Told],
-    value: &dyn Fn(&[f64]) -> f64,
+    value: &Mixture,
 ) -> Result<Vec<Vec<f64>>, ParzenError> {
     let names: Vec<String> = (0..dimensions).map(|d| d.to_string()).collect();
     let mut space = SearchSpace::new();
@@ -65,7 +68,7 @@ fn chosen(
 }
 
 /// What generation `number` makes as small as it can.
-fn mixture(task: &Task, number: usize) -> Box<dyn Fn(&[f64]) -> f64> {
+fn mixture(task: &Task, number: usize) -> Box<Mixture> {
     let weights = task.weights;
     if task.goal == Goal::Score {
         return Box::new(move |ratios| score(ratios, &weights).ln());
@@ -107,7 +110,7 @@ mod tests {
     }
 
     fn lowest(sampler: Sampler, seed: u32) -> f64 {
-        let task = Task { sampler, seed, ..Task::default() };
+        let task = Task { seed, sampler, ..Task::default() };
         let mut points: Vec<Vec<f64>> = Vec::new();
         for number in 0..25 {
             points.extend(generation(&task, 4, number, &told(&points)).expect("points"));

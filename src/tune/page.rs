@@ -23,7 +23,7 @@ pub fn page(findings: &Findings) -> Result<String, TuneError> {
     let title = format!("quadmend tune: {} trials", findings.trials.len());
     let body = [
         page.tiles(),
-        page.key(),
+        key(),
         page.trade_offs(),
         page.knobs(),
         page.table(),
@@ -84,23 +84,6 @@ impl Page<'_> {
             self.best.trial.number,
             counted(self.findings.meshes.len(), "mesh", "meshes")
         )
-    }
-
-    /// What the marks of all plots mean.
-    fn key(&self) -> String {
-        let marks = [
-            (Mark::Best, "best score"),
-            (Mark::Start, "the start"),
-            (Mark::Front, "Pareto front: no trial is better in all that has a weight"),
-            (Mark::Trial, "other trials"),
-        ];
-        let sign = |(mark, words): (Mark, &str)| {
-            let sign = mark.sign([7.0, 7.0], words);
-            format!(
-                "<span><svg viewBox=\"0 0 14 14\" aria-hidden=\"true\">{sign}</svg>{words}</span>"
-            )
-        };
-        format!("<div class=\"marks\">{}</div>", marks.map(sign).concat())
     }
 
     fn mark(&self, judged: &Judged) -> Mark {
@@ -300,6 +283,21 @@ impl Page<'_> {
             escaped(&config)
         ))
     }
+}
+
+/// What the marks of all plots mean.
+fn key() -> String {
+    let marks = [
+        (Mark::Best, "best score"),
+        (Mark::Start, "the start"),
+        (Mark::Front, "Pareto front: no trial is better in all that has a weight"),
+        (Mark::Trial, "other trials"),
+    ];
+    let sign = |(mark, words): (Mark, &str)| {
+        let sign = mark.sign([7.0, 7.0], words);
+        format!("<span><svg viewBox=\"0 0 14 14\" aria-hidden=\"true\">{sign}</svg>{words}</span>")
+    };
+    format!("<div class=\"marks\">{}</div>", marks.map(sign).concat())
 }
 
 /// What the pointer is told at a trial.
