@@ -167,7 +167,7 @@ fn the_command_leaves_files_that_others_take() {
     };
     let run = quadmend(here, &arguments("12"));
     let told = String::from_utf8_lossy(&run.stderr);
-    assert!(run.status.code().is_some_and(|code| code < 2), "{told}");
+    assert!(run.status.success(), "{told}");
     assert!(told.contains("best so far: score 1.0000, trial 0"), "{told}");
     assert!(String::from_utf8_lossy(&run.stdout).contains("front "), "the front is told");
     let journal = fs::read_to_string(here.join("out/journal.jsonl")).unwrap();
