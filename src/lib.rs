@@ -24,6 +24,7 @@ pub mod script;
 pub mod smooth;
 pub mod sqrtcc;
 pub mod surface;
+pub mod tune;
 pub mod views;
 pub mod watch;
 

@@ -8,7 +8,9 @@ use crate::mesh::{
     Flaw, MendError, MendPolicy, MendReport, MeshError, PolyMesh, Topology, check, mend,
 };
 use crate::metrics::{Metrics, MetricsError, Target, measure};
+use crate::moves::pure::Conversion;
 use crate::planner::automation::Automation;
+use crate::planner::edit::Edit;
 use crate::planner::gate::GateOptions;
 use crate::planner::schedule::{EditRecord, RoundRecord, Schedule};
 use crate::smooth;
@@ -78,6 +80,10 @@ pub struct Report {
     pub edits: Vec<EditRecord>,
     /// The rounds of planning.
     pub rounds: Vec<RoundRecord>,
+    /// How faces were made quads, if the configuration asks for that (`plan.pure_quad`); the last
+    /// of the edits.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub conversion: Option<Conversion>,
 }
 
 /// A cleaned mesh and how it came about.
@@ -106,8 +112,8 @@ pub fn clean(
     watch.progress(Phase::Measure, 0, 2, None);
     let target = Target::new(surface, &config.measure)?;
     let before = measure(&raw, Some(&target))?;
-    let (mut q, feature_edges, schedule) = edit((&mesh, raw.face_count()), surface, config, watch)?;
-    q.commit();
+    let Edited { q, feature_edges, schedule, conversion } =
+        edit((&mesh, raw.face_count()), surface, config, watch)?;
     let result = lower(&q, mesh.group_names())?.mesh;
     check(&result).map_err(CleanError::Flawed)?;
     watch.progress(Phase::Measure, 1, 2, None);
@@ -115,7 +121,7 @@ pub fn clean(
     let Schedule { edits, rounds, .. } = schedule;
     Ok(Cleaned {
         mesh: result,
-        report: Report { mends, feature_edges, before, after, edits, rounds },
+        report: Report { mends, feature_edges, before, after, edits, rounds, conversion },
     })
 }
 
@@ -124,6 +130,8 @@ pub fn clean(
 pub struct Planned {
     /// The edits, in order.
     pub edits: Vec<EditRecord>,
+    /// The rounds of planning.
+    pub rounds: Vec<RoundRecord>,
     /// What they and the smoothing between them make of the mesh.
     pub mesh: PolyMesh,
 }
@@ -138,18 +146,27 @@ pub fn plan(
 ) -> Result<Planned, CleanError> {
     let faces = mesh.face_count();
     let (mesh, _) = mend(mesh, policy)?;
-    let (q, _, schedule) = edit((&mesh, faces), reference.unwrap_or(&mesh), config, watch)?;
-    Ok(Planned { edits: schedule.edits, mesh: lower(&q, mesh.group_names())?.mesh })
+    let Edited { q, schedule, .. } =
+        edit((&mesh, faces), reference.unwrap_or(&mesh), config, watch)?;
+    let Schedule { edits, rounds, .. } = schedule;
+    Ok(Planned { edits, rounds, mesh: lower(&q, mesh.group_names())?.mesh })
 }
 
-/// Lifts, plans, edits and smooths a mended mesh that had so many faces before; also the number of
-/// feature edges.
+/// What was made of a mesh, still lifted.
+struct Edited {
+    q: QuadMesh,
+    feature_edges: usize,
+    schedule: Schedule,
+    conversion: Option<Conversion>,
+}
+
+/// Lifts, plans, edits and smooths a mended mesh that had so many faces before.
 fn edit(
     (mesh, faces): (&PolyMesh, usize),
     surface: &PolyMesh,
     config: &Config,
     watch: &dyn Watch,
-) -> Result<(QuadMesh, usize, Schedule), CleanError> {
+) -> Result<Edited, CleanError> {
     watch.progress(Phase::Reference, 0, 1, None);
     let reference = Reference::new(surface)?;
     let topology = Topology::new(mesh);
@@ -167,8 +184,43 @@ fn edit(
         relax: &config.relax,
         smooth: &config.smooth,
     };
-    let schedule = automation.run(&mut q, watch)?;
-    Ok((q, feature_edges, schedule))
+    let mut schedule = automation.run(&mut q, watch)?;
+    let mut conversion = None;
+    if config.plan.pure_quad {
+        let surface = (&reference, automation.orientation);
+        let done = pure_quad::convert_cleaned(&mut q, surface, budget, config, watch)?;
+        note_conversion(&mut schedule, &q, &done);
+        conversion = Some(done);
+    }
+    q.commit();
+    Ok(Edited { q, feature_edges, schedule, conversion })
+}
+
+/// Lists a conversion with the edits, so that a log of them makes it again.
+fn note_conversion(schedule: &mut Schedule, q: &QuadMesh, conversion: &Conversion) {
+    if conversion.ops.is_empty() {
+        return;
+    }
+    // It happens all over the mesh; its first vertex is as good a place as any.
+    let place = q.vertices().next().map_or([0.0; 3], |v| q.location(v).into());
+    let last = schedule.rounds.last();
+    let (made, irregularity) = (conversion.divided + conversion.pairs, q.total_irregularity());
+    schedule.rounds.push(RoundRecord {
+        lambda: last.map_or(0.0, |round| round.lambda),
+        seeds: made,
+        proposed: made,
+        made,
+        irregularity,
+        ..RoundRecord::default()
+    });
+    schedule.edits.push(EditRecord {
+        round: schedule.rounds.len() as u32,
+        gain: -(conversion.delta as i32),
+        cost: 0.0,
+        angle_growth_deg: 0.0,
+        place,
+        edit: Edit::TypeChange { ops: conversion.ops.clone() },
+    });
 }
 
 /// Lifts a clean mesh, its sharp features frozen and the vertices on feature lines of the

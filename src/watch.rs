@@ -19,6 +19,8 @@ pub enum Phase {
     Measure,
     /// Writing results.
     Write,
+    /// Trying configurations.
+    Tune,
 }
 
 /// Receiver of progress; asked regularly whether to go on.

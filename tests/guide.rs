@@ -34,7 +34,7 @@ fn commands(text: &str) -> Vec<String> {
 }
 
 /// The pages, in the order in which they are read.
-const PAGES: [&str; 4] = ["README.md", "first-remesh.md", "numbers.md", "presets.md"];
+const PAGES: [&str; 5] = ["README.md", "first-remesh.md", "numbers.md", "presets.md", "tuning.md"];
 
 /// Runs the commands of a page, in order.
 #[cfg(unix)]

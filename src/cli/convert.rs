@@ -13,7 +13,7 @@ use quadmend::watch::{Phase, Watch};
 use super::failure::Failure;
 use super::paths::is_stream;
 use super::source::{Begun, Source};
-use super::{Exit, output};
+use super::{Exit, output, summary};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -112,12 +112,8 @@ impl Convert {
 
     fn tell(&self, report: &Report) -> Result<(), Failure> {
         let conversion = &report.conversion;
-        for obstruction in &conversion.obstructions {
-            output::note(&format!("not a quad: {obstruction}"));
-        }
-        let others = conversion.left.len().saturating_sub(conversion.obstructions.len());
-        if others > 0 {
-            output::note(&format!("not a quad: {others} faces for which no way was found"));
+        for line in summary::not_quads(conversion) {
+            output::note(&line);
         }
         if self.source.quiet() {
             return Ok(());

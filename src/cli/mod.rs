@@ -28,6 +28,7 @@ mod render;
 mod settings;
 mod source;
 mod summary;
+mod tune;
 
 use std::process::ExitCode;
 
@@ -69,6 +70,7 @@ Examples:
   quadmend compare remesh.obj clean.obj --reference scan.obj
   quadmend edit remesh.obj --script edits.toml -o edited.obj   make chosen edits
   quadmend render remesh.obj clean.obj -o both.png          how does it look?
+  quadmend tune remesh.obj -r scan.obj -o tuning            which settings suit it best?
   quadmend config explain smooth                            what can be tuned?";
 
 /// Cleans the connectivity of quad-dominant meshes: irregular vertices and faces and T-junctions
@@ -91,6 +93,7 @@ enum Command {
     Convert(convert::Convert),
     Optimize(optimize::Optimize),
     Render(render::Render),
+    Tune(tune::Tune),
     Demo(demo::Demo),
     Config(config::ConfigCommand),
     Generate(generate::Generate),
@@ -112,6 +115,7 @@ fn run(command: &Command) -> Result<Exit, Failure> {
         Command::Convert(command) => command.run(),
         Command::Optimize(command) => command.run(),
         Command::Render(command) => command.run(),
+        Command::Tune(command) => command.run(),
         Command::Demo(command) => command.run(),
         Command::Config(command) => command.run(),
         Command::Generate(command) => command.run(),

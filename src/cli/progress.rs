@@ -189,5 +189,6 @@ fn words(phase: Phase) -> &'static str {
         Phase::Smooth => "smoothing",
         Phase::Measure => "measuring",
         Phase::Write => "writing",
+        Phase::Tune => "tuning",
     }
 }

@@ -1,6 +1,7 @@
 //! What a run did, in words.
 
 use quadmend::metrics;
+use quadmend::moves::pure::Conversion;
 use quadmend::pipeline::Report;
 use quadmend::planner::edit::Edit;
 use quadmend::planner::schedule::EditRecord;
@@ -19,7 +20,19 @@ pub(super) fn work(report: &Report) -> String {
              type changes {types})"
         ),
     });
+    lines.extend(report.conversion.iter().flat_map(not_quads));
     lines.join("\n") + "\n"
+}
+
+/// Which faces could not be made quads, and why.
+pub(super) fn not_quads(conversion: &Conversion) -> Vec<String> {
+    let known = conversion.obstructions.iter();
+    let mut lines: Vec<String> = known.map(|o| format!("not a quad: {o}")).collect();
+    let others = conversion.left.len().saturating_sub(conversion.obstructions.len());
+    if others > 0 {
+        lines.push(format!("not a quad: {others} faces for which no way was found"));
+    }
+    lines
 }
 
 /// How many edits of each kind there are.
@@ -50,8 +63,12 @@ pub(super) fn text(report: &Report) -> String {
     format!("{}\n{}", work(report), table(report))
 }
 
-/// Nothing to improve means that nothing was: neither a mend nor an edit.
+/// Nothing to improve means that nothing was: neither a mend nor an edit. Quads that were asked for
+/// and could not be had are a limit missed.
 pub(super) fn exit(report: &Report) -> Exit {
+    if report.conversion.as_ref().is_some_and(|c| !c.left.is_empty()) {
+        return Exit::LimitMissed;
+    }
     let idle = report.edits.is_empty() && report.mends.mends.is_empty();
     if idle { Exit::NothingToImprove } else { Exit::Done }
 }

@@ -31,6 +31,8 @@ pub const PRESETS: &[(&str, &str)] = &[
     ("balanced", include_str!("../../configs/balanced.toml")),
     ("clean", include_str!("../../configs/clean.toml")),
     ("gentle", include_str!("../../configs/gentle.toml")),
+    ("pure-quad", include_str!("../../configs/pure-quad.toml")),
+    ("t-junctions", include_str!("../../configs/t-junctions.toml")),
 ];
 
 /// A section as the configuration sees it.
@@ -133,6 +135,20 @@ impl Config {
     #[must_use]
     pub fn to_toml(&self) -> String {
         self.table().to_string()
+    }
+
+    /// The values that are not those of [`Self::default`], as a file.
+    #[must_use]
+    pub fn to_toml_changed(&self) -> String {
+        let (mut table, usual) = (self.table(), Self::default().table());
+        for (name, section) in &mut table {
+            if let Value::Table(section) = section {
+                section
+                    .retain(|key, value| usual.get(name).and_then(|s| s.get(key)) != Some(&*value));
+            }
+        }
+        table.retain(|_, section| section.as_table().is_some_and(|s| !s.is_empty()));
+        table.to_string()
     }
 
     /// Checks each value of the layer and puts it in its place.

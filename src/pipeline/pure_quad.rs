@@ -88,9 +88,28 @@ fn edit(
     let surface = (&reference, orientation(mesh, &reference));
     let Settled { conversion, touched } =
         convert_settled(&mut q, Kind::Faces, surface, &config.relax, watch);
-    smooth_around(&mut q, &touched, (&reference, allowed), config, watch)?;
+    smooth_within(&mut q, Some(&touched), (&reference, allowed), config, watch)?;
     q.commit();
     Ok((q, feature_edges, conversion))
+}
+
+/// Converts every face of a mesh that has been cleaned, and smooths first what has changed, which
+/// brings it back near the surface, and from there all of it.
+pub(super) fn convert_cleaned(
+    q: &mut QuadMesh,
+    surface: (&Reference, Orientation),
+    allowed: Budget,
+    config: &Config,
+    watch: &dyn Watch,
+) -> Result<Conversion, MeshError> {
+    let Settled { conversion, touched } =
+        convert_settled(q, Kind::Faces, surface, &config.relax, watch);
+    if !conversion.ops.is_empty() {
+        for around in [Some(&*touched), None] {
+            smooth_within(q, around, (surface.0, allowed), config, watch)?;
+        }
+    }
+    Ok(conversion)
 }
 
 /// A conversion, and the vertices that it tried to change.
@@ -117,20 +136,23 @@ pub(crate) fn convert_settled(
     Settled { conversion, touched }
 }
 
-/// Smooths what is near the `touched` vertices, within the budget of distance.
-fn smooth_around(
+/// Smooths what is near the `touched` vertices, or everything, within the budget of distance.
+fn smooth_within(
     q: &mut QuadMesh,
-    touched: &[Vertex],
+    touched: Option<&[Vertex]>,
     (reference, allowed): (&Reference, Budget),
     config: &Config,
     watch: &dyn Watch,
 ) -> Result<(), MeshError> {
     let lowered = lower(q, &[String::new()])?;
-    let mut held = vec![true; q.vertex_ids() as usize];
-    for v in Surroundings::gather(q, touched, RINGS).free(q) {
-        held[v as usize] = false;
-    }
-    let held: Vec<bool> = lowered.vertex_ids.iter().map(|&v| held[v as usize]).collect();
+    let held = touched.map(|touched| {
+        let mut held = vec![true; q.vertex_ids() as usize];
+        for v in Surroundings::gather(q, touched, RINGS).free(q) {
+            held[v as usize] = false;
+        }
+        lowered.vertex_ids.iter().map(|&v| held[v as usize]).collect()
+    });
+    let held: Vec<bool> = held.unwrap_or_else(|| lowered.held.clone());
     let start = Reference::plain(&lowered.mesh).map(|m| deviation(&m, reference, SAMPLES));
     let start = start.unwrap_or_default();
     let limit =

@@ -62,6 +62,8 @@ knobs! {
         size_drift: f64 = 0.08, in 0.0..=3.0, "ln";
         /// Iterations of smoothing before the first stage and after each.
         smooth_between: u32 = 40, in 0.0..=5000.0, "count";
+        /// Make every face a quad at the end, as far as parity allows.
+        pure_quad: bool = false, in 0.0..=1.0, "";
     }
 }
 

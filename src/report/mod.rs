@@ -22,7 +22,8 @@ use crate::render::HeatRange;
 use serde_json::{Value, json};
 
 const PAGE: &str = include_str!("../../web/src/page.html");
-const STYLE: &str = include_str!("../../web/dist/report.css");
+/// The look of all pages: colours for light and dark, tables, charts.
+pub(crate) const STYLE: &str = include_str!("../../web/dist/report.css");
 const SCRIPT: &str = include_str!("../../web/dist/report.js");
 
 /// A mesh of the report with all that is known about it.
@@ -55,25 +56,37 @@ pub struct Document<'a> {
     pub run: Option<Run<'a>>,
 }
 
+/// A template with texts in place of its marks, which come in the order of the template, so that a
+/// mark within a text is left alone.
+pub(crate) fn filled(template: &str, parts: &[(&str, &str)]) -> String {
+    let length = parts.iter().map(|(_, text)| text.len()).sum::<usize>();
+    let mut page = String::with_capacity(template.len() + length);
+    let mut rest = template;
+    for (mark, text) in parts {
+        let (before, after) = rest.split_once(mark).unwrap_or((rest, ""));
+        page.push_str(before);
+        page.push_str(text);
+        rest = after;
+    }
+    page + rest
+}
+
+/// A text as HTML.
+pub(crate) fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
+}
+
 impl Document<'_> {
     /// The whole file.
     #[must_use]
     pub fn html(&self) -> String {
         // What could end the script element is written as an escape that JSON has for it.
         let data = self.data().to_string().replace('<', "\\u003c");
-        let title = self.title.replace('&', "&amp;").replace('<', "&lt;");
-        let parts =
-            [("@TITLE@", &*title), ("@STYLE@", STYLE), ("@DATA@", &*data), ("@SCRIPT@", SCRIPT)];
-        let mut html = String::with_capacity(PAGE.len() + STYLE.len() + SCRIPT.len() + data.len());
-        let mut rest = PAGE;
-        // In the order of the page, so that a mark within a part is left alone.
-        for (mark, text) in parts {
-            let (before, after) = rest.split_once(mark).unwrap_or((rest, ""));
-            html.push_str(before);
-            html.push_str(text);
-            rest = after;
-        }
-        html + rest
+        let title = escaped(&self.title);
+        filled(
+            PAGE,
+            &[("@TITLE@", &title), ("@STYLE@", STYLE), ("@DATA@", &data), ("@SCRIPT@", SCRIPT)],
+        )
     }
 
     fn data(&self) -> Value {
