@@ -19,7 +19,7 @@ use quadmend::planner::local;
 use quadmend::planner::movement::{Cancellation, MovementGraph};
 use quadmend::sqrtcc::{QuadMesh, Vertex, lift, lower};
 use quadmend::watch::Silent;
-use rustc_hash::FxHashSet;
+use std::collections::BTreeSet;
 
 /// Steps that a search goes.
 const REACH: u16 = 16;
@@ -311,11 +311,11 @@ fn the_global_plan_brings_opposite_burgers_vectors_together() {
         let faraway: Vec<Vertex> = q.vertices().step_by(300).take(2).collect();
         let [t_junction, _] = emit(&mut q, faraway[0]);
         stroll(&mut q, t_junction, &mut dice, 24);
-        let found = groups(&q, 60, &FxHashSet::default());
+        let found = groups(&q, 60, &BTreeSet::new());
         one += usize::from(matches!(&found[..], [g] if g.gain == 4 && g.members.len() == 4));
         // A second flip far away: each finds its own again.
         emit(&mut q, faraway[1]);
-        let found = groups(&q, 60, &FxHashSet::default());
+        let found = groups(&q, 60, &BTreeSet::new());
         two += usize::from(found.len() == 2 && found.iter().all(|g| g.gain == 4));
         // What was tried is not proposed again.
         let tried = found.iter().map(|g| g.link).collect();

@@ -13,8 +13,7 @@ use crate::smooth::{self, Budget, Orientation, RelaxOptions, SmoothOptions};
 use crate::sqrtcc::{QuadMesh, Vertex, lower};
 use crate::surface::{Reference, deviation};
 use crate::watch::Watch;
-use rustc_hash::FxHashSet;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What the automation works with and towards.
 #[derive(Debug, Clone, Copy)]
@@ -135,7 +134,7 @@ impl Automation<'_> {
             Stage::Relocations { .. } => self.plan.relocations,
             _ => self.plan.rounds,
         };
-        let mut tried = FxHashSet::default();
+        let mut tried = BTreeSet::new();
         for _ in 0..rounds {
             let groups = match stage {
                 Stage::Groups { .. } => groups(mesh, &mut tried),
@@ -188,7 +187,7 @@ impl Automation<'_> {
 }
 
 /// The global plan for the mesh as it is, of what has not been tried; by first member.
-fn groups(mesh: &QuadMesh, tried: &mut FxHashSet<Link>) -> BTreeMap<Vertex, Group> {
+fn groups(mesh: &QuadMesh, tried: &mut BTreeSet<Link>) -> BTreeMap<Vertex, Group> {
     let groups = global::groups(mesh, moves::path::REACH, tried);
     tried.extend(groups.iter().map(|g| g.link));
     groups.into_iter().filter_map(|g| Some((*g.members.first()?, g))).collect()

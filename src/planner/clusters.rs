@@ -48,7 +48,9 @@ impl Clusters {
         limits: Limits,
     ) -> Option<Region> {
         self.grower.start(mesh);
-        joined.iter().for_each(|&v| self.grower.add(mesh, v));
+        for &v in joined {
+            self.grower.add(mesh, v);
+        }
         let region = self.grower.convex(mesh, limits.faces).ok()?;
         can_gain(&region, limits.least_gain).then_some(region)
     }

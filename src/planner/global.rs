@@ -12,8 +12,8 @@ use crate::moves::{Offset, Path, quarters};
 use crate::sqrtcc::{HalfEdge, QuadMesh, Vertex};
 use mwmatching::Matching;
 use rayon::prelude::*;
-use rustc_hash::{FxHashMap, FxHashSet};
-use std::collections::BTreeMap;
+use rustc_hash::FxHashMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Elements that are to vanish or merge together.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -53,7 +53,7 @@ pub type Link = [Vertex; 2];
 /// `reach` edges of Q; none by a link that was tried before. O(elements · (area they are spread
 /// over) + elements³) at worst, much less as a rule.
 #[must_use]
-pub fn groups(mesh: &QuadMesh, reach: usize, tried: &FxHashSet<Link>) -> Vec<Group> {
+pub fn groups(mesh: &QuadMesh, reach: usize, tried: &BTreeSet<Link>) -> Vec<Group> {
     let roads = Roads::new(mesh, reach);
     let dislocations = roads.dislocations(mesh, reach);
     roads.groups(mesh, &dislocations, tried)
@@ -108,7 +108,7 @@ impl Roads {
         &self,
         mesh: &QuadMesh,
         dislocations: &Dislocations,
-        tried: &FxHashSet<Link>,
+        tried: &BTreeSet<Link>,
     ) -> Vec<Group> {
         // A dislocation goes by the first element of its road.
         let unit = |i: usize| dislocations.get(&i).map_or(i, |&way| self.ends[way][0]);
