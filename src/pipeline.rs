@@ -78,6 +78,8 @@ pub struct Report {
     pub edits: Vec<EditRecord>,
     /// The rounds of planning.
     pub rounds: Vec<RoundRecord>,
+    /// Whether the run was told to stop before it was done.
+    pub stopped: bool,
 }
 
 /// A cleaned mesh and how it came about.
@@ -107,6 +109,7 @@ pub fn clean(
     let target = Target::new(surface, &config.measure)?;
     let before = measure(&raw, Some(&target))?;
     let (mut q, feature_edges, schedule) = edit((&mesh, raw.face_count()), surface, config, watch)?;
+    let stopped = watch.cancelled();
     q.commit();
     let result = lower(&q, mesh.group_names())?.mesh;
     check(&result).map_err(CleanError::Flawed)?;
@@ -115,7 +118,7 @@ pub fn clean(
     let Schedule { edits, rounds, .. } = schedule;
     Ok(Cleaned {
         mesh: result,
-        report: Report { mends, feature_edges, before, after, edits, rounds },
+        report: Report { mends, feature_edges, before, after, edits, rounds, stopped },
     })
 }
 

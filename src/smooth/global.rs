@@ -50,7 +50,8 @@ pub fn held_vertices(mesh: &PolyMesh, topology: &Topology, features: &FixedBitSe
 ///
 /// The result is within `budget` of the reference; without one, within
 /// [`SmoothOptions::budget`] times the distance of the start. If no limit can be kept anywhere,
-/// the points are those of the start. Cancelling gives what is reached so far, checked alike.
+/// the points are those of the start. If `watch` cancels, it ends after
+/// [`SmoothOptions::hurried`] iterations or as soon as it can, checked alike.
 /// O(iterations · n), parallel; independent of the number of threads.
 ///
 /// # Panics
@@ -66,8 +67,12 @@ pub fn smooth(
 ) -> (Vec<Point>, SmoothReport) {
     assert_eq!(held.len(), mesh.vertex_count(), "one entry for each vertex");
     let mut work = Work::new(mesh, held, reference, (options, relax), budget);
-    work.iterate(watch);
-    let (points, found) = work.mend();
+    let (points, found) = if work.iterate(watch) {
+        work.land();
+        work.mend()
+    } else {
+        (mesh.points().to_vec(), work.start.clone())
+    };
     let kernel = &work.region.kernel;
     let report = SmoothReport {
         iterations: kernel.iterations,
@@ -155,28 +160,36 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// Iterates until vertices are still, looking for lost places in between.
-    fn iterate(&mut self, watch: &dyn Watch) {
-        let total = self.options.iterations;
+    /// Iterates until vertices are still, looking for lost places in between; whether there is
+    /// anything to go on with.
+    fn iterate(&mut self, watch: &dyn Watch) -> bool {
+        let (total, hurried) = (self.options.iterations, self.options.hurried);
         let round = if self.options.anchor_every == 0 { total } else { self.options.anchor_every };
         let places = watched(self.guard.reference, self.mesh.vertex_count());
+        let stops = |done: u32| done >= hurried && watch.cancelled();
         let mut done = 0;
-        while done < total && !watch.cancelled() {
+        while done < total && !stops(done) {
             watch.progress(Phase::Smooth, done as usize, total as usize, None);
             let count = round.min(total - done);
             let kernel = &mut self.region.kernel;
-            kernel.run(self.guard.reference, &self.setting, (count, self.options.still_edges));
+            let until = (count, self.options.still_edges);
+            kernel.run(self.guard.reference, &self.setting, until, stops);
             done += count;
             if kernel.motion < self.options.still_edges {
                 break;
             }
-            if done < total && self.options.anchor_every > 0 {
+            if done < total && self.options.anchor_every > 0 && !stops(done) {
                 let points = kernel.vertices.iter().map(|v| v.point).collect();
                 self.mesh.set_points(points);
                 let far = self.options.anchor_share * self.limits.budget.hausdorff;
                 pull(kernel, &self.mesh, &places, far);
             }
         }
+        hurried > 0 || !watch.cancelled()
+    }
+
+    /// Puts the vertices where faces, not corners, lie on the reference, and unfolds quads.
+    fn land(&mut self) {
         self.region.kernel.land(self.guard.reference, &self.setting);
         self.region.kernel.fit(self.guard.reference, &self.setting, self.options.fit);
         self.mesh.set_points(self.region.kernel.vertices.iter().map(|v| v.point).collect());

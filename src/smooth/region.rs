@@ -158,7 +158,7 @@ pub fn relax_local(
         kernel.find_normals(reference, &setting);
         region.prepared = true;
     }
-    kernel.run(reference, &setting, (iterations, 0.0));
+    kernel.run(reference, &setting, (iterations, 0.0), |_| false);
     kernel.land(reference, &setting);
     RelaxReport { iterations: kernel.iterations, energy: kernel.energy, motion: kernel.motion }
 }
