@@ -7,8 +7,12 @@ use quadmend::config::Config;
 use quadmend::mesh::{MendPolicy, Point, Vector};
 use quadmend::pipeline::{self, Cleaned};
 use quadmend::watch::{Phase, Watch};
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::Duration;
 
 /// Cancels after it has been asked so many times, and counts what happens from then on.
 #[derive(Default)]
@@ -109,4 +113,70 @@ fn a_run_that_is_stopped_at_once_is_smoothed() {
     let [before, after] = [&cleaned.report.before, &cleaned.report.after]
         .map(|m| m.summary.fig10_mean.expect("it has faces"));
     assert!(after < 0.75 * before, "angle deviation {before} -> {after}");
+}
+
+/// The command on the sample mesh, with smoothing that takes minutes.
+fn slow_clean(folder: &Path, more: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_quadmend"));
+    command.args(["clean", "assets/bracket.obj", "--reference", "assets/bracket.ref.obj", "-o"]);
+    command.arg(folder.join("clean.obj"));
+    command.args(["--set", "plan.smooth_between=5000", "--set", "smooth.still_edges=0"]);
+    command.args(more).stdout(Stdio::null()).stderr(Stdio::piped());
+    command
+}
+
+/// Sends `SIGINT` so many times, from when the run reports progress.
+fn interrupted(mut run: Child, times: u32) -> (Option<i32>, String) {
+    let mut told = BufReader::new(run.stderr.take().expect("it is piped"));
+    let mut text = String::new();
+    told.read_line(&mut text).expect("a run tells how far it is");
+    for _ in 0..times {
+        let sent = Command::new("kill").args(["-INT", &run.id().to_string()]).status();
+        assert!(sent.expect("there is a kill").success());
+        // Signals that come together count as one.
+        std::thread::sleep(Duration::from_millis(300));
+    }
+    told.read_to_string(&mut text).expect("text");
+    (run.wait().expect("it ends").code(), text)
+}
+
+#[test]
+fn a_time_limit_ends_a_run_with_a_whole_mesh_that_its_log_makes_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    let log = path("edits.toml").display().to_string();
+    let run = slow_clean(folder.path(), &["--time-limit", "2", "--log", &log]).output();
+    let run = run.expect("the command runs");
+    let told = String::from_utf8_lossy(&run.stderr);
+    assert_eq!(run.status.code(), Some(0), "{told}");
+    assert!(told.contains("best mesh so far"), "{told}");
+    let again = Command::new(env!("CARGO_BIN_EXE_quadmend"))
+        .args(["edit", "assets/bracket.obj", "--reference", "assets/bracket.ref.obj", "--script"])
+        .args([path("edits.toml"), "-o".into(), path("again.obj")])
+        .status();
+    assert!(again.expect("the command runs").code().is_some_and(|code| code < 2));
+    let [clean, again] = ["clean.obj", "again.obj"].map(|f| std::fs::read(path(f)).expect(f));
+    assert!(clean == again, "the log of a stopped run makes the same mesh");
+}
+
+#[test]
+fn an_interrupt_ends_a_run_with_the_mesh_so_far() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = slow_clean(folder.path(), &[]).spawn().expect("the command runs");
+    let (code, told) = interrupted(run, 1);
+    assert_eq!(code, Some(130), "{told}");
+    let mesh = quadmend::io::read(&folder.path().join("clean.obj")).expect("a whole mesh").mesh;
+    quadmend::mesh::check(&mesh).expect("a clean mesh");
+}
+
+#[test]
+fn a_second_interrupt_ends_a_run_without_touching_its_output() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("clean.obj"), "old").expect("a file");
+    let slow_end = ["--set", "smooth.hurried=5000", "--set", "smooth.iterations=5000"];
+    let run = slow_clean(folder.path(), &slow_end).spawn().expect("the command runs");
+    let (code, told) = interrupted(run, 2);
+    assert_eq!(code, Some(130), "{told}");
+    assert_eq!(std::fs::read(folder.path().join("clean.obj")).expect("a file"), b"old", "{told}");
+    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing is left");
 }

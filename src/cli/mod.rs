@@ -27,6 +27,7 @@ mod progress;
 mod render;
 mod settings;
 mod source;
+mod stop;
 mod summary;
 
 use std::process::ExitCode;
@@ -49,6 +50,8 @@ enum Exit {
     /// A limit of `--fail-if` was missed, or not every face could be made a quad; the output was
     /// written all the same.
     LimitMissed = 4,
+    /// Somebody ended the run; what it had by then was written.
+    Interrupted = 130,
 }
 
 const EXIT_CODES: &str = "\
@@ -59,7 +62,7 @@ Exit codes:
   3  bad input; nothing is written
   4  a limit given with --fail-if was missed, or not every face could be made a quad (the output
      is written all the same)
-130  interrupted";
+130  interrupted: the best mesh so far is written (nothing is after a second interrupt)";
 
 const EXAMPLES: &str = "\
 Examples:

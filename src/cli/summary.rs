@@ -19,6 +19,9 @@ pub(super) fn work(report: &Report) -> String {
              type changes {types})"
         ),
     });
+    if report.stopped {
+        lines.push("stopped before it was done: this is the best mesh so far".to_owned());
+    }
     lines.join("\n") + "\n"
 }
 
