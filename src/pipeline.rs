@@ -19,6 +19,7 @@ use crate::surface::{
 };
 use crate::watch::{Phase, Watch};
 use serde::Serialize;
+use std::sync::Arc;
 use thiserror::Error;
 
 /// A mesh farther than this from its reference in the mean, relative to the diagonal of the
@@ -105,10 +106,14 @@ pub fn clean(
     let raw = mesh.clone();
     let (mesh, mends) = mend(mesh, policy)?;
     let surface = reference.unwrap_or(&mesh);
+    watch.progress(Phase::Reference, 0, 1, None);
+    let reference = Arc::new(Reference::new(surface)?);
     watch.progress(Phase::Measure, 0, 2, None);
-    let target = Target::new(surface, &config.measure)?;
+    let target = Target::on(Arc::clone(&reference), surface, &config.measure);
     let before = measure(&raw, Some(&target))?;
-    let (mut q, feature_edges, schedule) = edit((&mesh, raw.face_count()), surface, config, watch)?;
+    let faces = raw.face_count();
+    drop(raw);
+    let (mut q, feature_edges, schedule) = edit((&mesh, faces), &reference, config, watch)?;
     let stopped = watch.cancelled();
     q.commit();
     let result = lower(&q, mesh.group_names())?.mesh;
@@ -141,7 +146,9 @@ pub fn plan(
 ) -> Result<Planned, CleanError> {
     let faces = mesh.face_count();
     let (mesh, _) = mend(mesh, policy)?;
-    let (q, _, schedule) = edit((&mesh, faces), reference.unwrap_or(&mesh), config, watch)?;
+    watch.progress(Phase::Reference, 0, 1, None);
+    let reference = Reference::new(reference.unwrap_or(&mesh))?;
+    let (q, _, schedule) = edit((&mesh, faces), &reference, config, watch)?;
     Ok(Planned { edits: schedule.edits, mesh: lower(&q, mesh.group_names())?.mesh })
 }
 
@@ -149,21 +156,22 @@ pub fn plan(
 /// feature edges.
 fn edit(
     (mesh, faces): (&PolyMesh, usize),
-    surface: &PolyMesh,
+    reference: &Reference,
     config: &Config,
     watch: &dyn Watch,
 ) -> Result<(QuadMesh, usize, Schedule), CleanError> {
     watch.progress(Phase::Reference, 0, 1, None);
-    let reference = Reference::new(surface)?;
     let topology = Topology::new(mesh);
-    let budget = budget(mesh, &reference, (&config.gate, mean_edge(mesh, &topology)))?;
-    let (mut q, feature_edges) = lift_held(mesh, &topology, &reference, &config.features)?;
+    let budget = budget(mesh, reference, (&config.gate, mean_edge(mesh, &topology)))?;
+    let (mut q, feature_edges) = lift_held(mesh, &topology, reference, &config.features)?;
+    let mean_edge = mean_edge(mesh, &topology);
+    drop(topology);
     let automation = Automation {
-        reference: &reference,
-        orientation: smooth::orientation(mesh, &reference),
+        reference,
+        orientation: smooth::orientation(mesh, reference),
         budget,
         faces,
-        mean_edge: mean_edge(mesh, &topology),
+        mean_edge,
         plan: &config.plan,
         costs: &config.cost,
         gate: &config.gate,

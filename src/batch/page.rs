@@ -32,8 +32,8 @@ const COLUMNS: &[Column] = &[
     Column { head: "faces", key: "F", decimals: 0, factor: 1.0 },
     Column { head: "E", key: "irregular_elements", decimals: 0, factor: 1.0 },
     Column { head: "T-junctions", key: "t_junctions", decimals: 0, factor: 1.0 },
-    Column { head: "angle deviation °", key: "fig10_mean", decimals: 1, factor: 1.0 },
-    Column { head: "least Jacobian", key: "scaled_jacobian_min", decimals: 2, factor: 1.0 },
+    Column { head: "angles °", key: "fig10_mean", decimals: 1, factor: 1.0 },
+    Column { head: "Jacobian", key: "scaled_jacobian_min", decimals: 2, factor: 1.0 },
     Column { head: "Hausdorff %", key: "hausdorff", decimals: 2, factor: 100.0 },
 ];
 
@@ -88,7 +88,7 @@ fn row(row: &Row) -> String {
                 // Writing to a string cannot fail.
                 let _ = write!(
                     html,
-                    "<td class=\"picture\"><img loading=\"lazy\" width=\"160\" height=\"120\" \
+                    "<td class=\"picture\"><img loading=\"lazy\" width=\"144\" height=\"108\" \
                      alt=\"{when}\" src=\"data:image/png;base64,{data}\"></td>"
                 );
             }

@@ -9,7 +9,7 @@ use super::worker::{Size, Stage, Task};
 use crate::mesh::MeshError;
 use crate::smooth::{self, Budget, Orientation, RelaxOptions, SmoothOptions};
 use crate::sqrtcc::{QuadMesh, Vertex, lower};
-use crate::surface::{Reference, deviation};
+use crate::surface::Reference;
 use crate::watch::Watch;
 
 /// What the automation works with and towards.
@@ -37,10 +37,6 @@ pub struct Automation<'a> {
     pub smooth: &'a SmoothOptions,
 }
 
-/// Samples each way for the distance before smoothing.
-const SAMPLES: usize = 20_000;
-/// Room for a budget that is met exactly: none at all and smoothing could only stand still.
-const HARDLY_MORE: f64 = 1.002;
 /// How many times its even share of the slack in distance an element may use up.
 const GREED: f64 = 16.0;
 
@@ -155,15 +151,8 @@ impl Automation<'_> {
         watch: &dyn Watch,
     ) -> Result<(), MeshError> {
         let polygons = lower(mesh, &[String::new()])?;
-        let start =
-            Reference::plain(&polygons.mesh).map(|m| deviation(&m, self.reference, SAMPLES));
-        let start = start.unwrap_or_default();
-        // Where edits have used up the budget, smoothing must not make it worse.
-        let limit = |budget: f64, start: f64| budget.max(HARDLY_MORE * start);
-        let budget = Budget {
-            hausdorff: limit(self.hausdorff(), start.hausdorff),
-            rms: limit(self.smooth.budget * self.budget.rms, start.rms),
-        };
+        let budget =
+            Budget { hausdorff: self.hausdorff(), rms: self.smooth.budget * self.budget.rms };
         let (points, _) = smooth::smooth(
             &polygons.mesh,
             &polygons.held,

@@ -5,12 +5,15 @@ use fixedbitset::FixedBitSet;
 use super::anchors::{pull, watched};
 use super::guard::{Budget, Finding, Guard, Limits, Mending};
 use super::kernel::Setting;
-use super::region::{Orientation, Region, orientation};
+use super::region::{Orientation, Region, at_centres, vote};
 use super::untangle::untangle;
 use super::{RelaxOptions, SmoothOptions};
 use crate::mesh::{NONE, Point, PolyMesh, Topology};
 use crate::surface::{Deviation, Reference};
 use crate::watch::{Phase, Watch};
+
+/// Room for a budget that is met exactly: none at all and smoothing could only stand still.
+const HARDLY_MORE: f64 = 1.002;
 
 /// How smoothing a mesh went.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,8 +51,8 @@ pub fn held_vertices(mesh: &PolyMesh, topology: &Topology, features: &FixedBitSe
 
 /// Moves the vertices of `mesh` that are not `held` for good face shapes; the new points.
 ///
-/// The result is within `budget` of the reference; without one, within
-/// [`SmoothOptions::budget`] times the distance of the start. If no limit can be kept anywhere,
+/// The result is within `budget` of the reference, or hardly farther than the start where that is
+/// beyond it; without one, within [`SmoothOptions::budget`] times the distance of the start. If no limit can be kept anywhere,
 /// the points are those of the start. If `watch` cancels, it ends after
 /// [`SmoothOptions::hurried`] iterations or as soon as it can, checked alike.
 /// O(iterations · n), parallel; independent of the number of threads.
@@ -87,7 +90,8 @@ pub fn smooth(
     (points, report)
 }
 
-/// The limits that follow from the start where none are given.
+/// The limits: the budget, or, where the start is beyond it, hardly more than that; without one,
+/// what follows from the start.
 pub(crate) fn limits(
     start: &Finding,
     options: &SmoothOptions,
@@ -96,10 +100,14 @@ pub(crate) fn limits(
 ) -> Limits {
     // What rounding alone does to a mesh that lies on its reference is not counted.
     let scaled = |d: f64| d * options.budget + diagonal * 1e-6;
-    let budget = budget.unwrap_or(Budget {
-        hausdorff: scaled(start.deviation.hausdorff),
-        rms: scaled(start.deviation.rms),
-    });
+    let Deviation { hausdorff, rms } = start.deviation;
+    let limit = |budget: Option<f64>, start: f64| {
+        budget.map_or(scaled(start), |budget| budget.max(HARDLY_MORE * start))
+    };
+    let budget = Budget {
+        hausdorff: limit(budget.map(|b| b.hausdorff), hausdorff),
+        rms: limit(budget.map(|b| b.rms), rms),
+    };
     Limits { budget, jacobian: options.least_jacobian }
 }
 
@@ -135,13 +143,14 @@ impl<'a> Work<'a> {
         (options, relax): (&'a SmoothOptions, &RelaxOptions),
         budget: Option<Budget>,
     ) -> Self {
-        let side = orientation(mesh, reference);
+        let centres = at_centres(mesh, reference);
+        let side = vote(mesh, reference, &centres);
         let (stress, project_every) = (options.stress, options.project_every);
         let relax = RelaxOptions { stress, project_every, ..relax.clone() };
         let samples = mesh.vertex_count().clamp(20_000, 200_000);
         let places = watched(reference, samples);
         let guard = Guard { reference, places, samples, sign: side.sign() };
-        let start = guard.check(mesh);
+        let start = guard.check_at(mesh, &centres);
         let limits = limits(&start, options, budget, reference.diagonal());
         let setting = Setting::new(&relax, side.sign(), true);
         let mut region = filled(mesh, held, side);
