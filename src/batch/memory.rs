@@ -3,7 +3,7 @@
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use thiserror::Error;
 
-/// Bytes for each face of the mesh, at the most that were measured (`docs/scale.md`).
+/// Bytes for each face of the mesh, at the most that was measured; see `docs/scale.md`.
 const BYTES_PER_FACE: u64 = 3000;
 /// Bytes for each face of the reference.
 const BYTES_PER_REFERENCE_FACE: u64 = 700;
