@@ -62,7 +62,7 @@ impl Messy {
         let (mended, _) = mend(self.mesh.clone(), MendPolicy::Mend).expect("it was cleaned");
         let mut faults = Faults { name: &self.name, lines: Vec::new() };
         judge_counts(cleaned, config, &mut faults);
-        judge_distance(&mended, cleaned, config, &mut faults);
+        judge_distance((&mended, self.reference.is_none()), cleaned, config, &mut faults);
         let surface = self.reference.as_ref().unwrap_or(&mended);
         judge_lines(&mended, surface, cleaned, config, &mut faults);
         faults.lines
@@ -103,10 +103,17 @@ fn judge_counts(cleaned: &Cleaned, config: &Config, faults: &mut Faults) {
 }
 
 /// The mesh stays as near to its reference as it was, or as a mesh on itself may go.
-fn judge_distance(mended: &PolyMesh, cleaned: &Cleaned, config: &Config, faults: &mut Faults) {
+fn judge_distance(
+    (mended, on_itself): (&PolyMesh, bool),
+    cleaned: &Cleaned,
+    config: &Config,
+    faults: &mut Faults,
+) {
     let (old, new) = (&cleaned.report.before.summary, &cleaned.report.after.summary);
     let edge = quadmend::surface::mean_edge(mended, &Topology::new(mended)) / mended.diagonal();
     let gate = &config.gate;
+    // A flat mesh is on its reference to the bit.
+    let is_exact = old.rms.is_some_and(|rms| rms < NOISE_REL);
     // Single edits may go so far; what the last smoothing cannot take back stays.
     let own = gate.own_hausdorff_edges * gate.hausdorff * gate.distance + PROBE_GAP_EDGES;
     for (what, of, own) in [
@@ -114,7 +121,8 @@ fn judge_distance(mended: &PolyMesh, cleaned: &Cleaned, config: &Config, faults:
         ("RMS", [old.rms, new.rms], gate.own_rms_edges * gate.rms),
     ] {
         let [old, new] = of.map(|d| d.expect("distances are measured"));
-        let most = GROWTH * old.max(own * edge) + NOISE_REL;
+        let own = if on_itself || is_exact { own * edge } else { 0.0 };
+        let most = GROWTH * old.max(own) + NOISE_REL;
         faults.unless(new <= most, || {
             format!("{what} distance {old:.5} -> {new:.5}, at most {most:.5} of the diagonal")
         });
