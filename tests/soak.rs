@@ -44,7 +44,9 @@ fn random_meshes_become_cleaner_and_keep_every_invariant() {
     let faults: Vec<&String> = outcomes.iter().flat_map(|o| &o.faults).collect();
     let e = |i: usize| outcomes.iter().map(|o| o.e[i]).sum::<u64>();
     say(&format!("{count} random meshes: E {} -> {}, {} faults", e(0), e(1), faults.len()));
-    faults.iter().for_each(|fault| say(fault));
+    for fault in &faults {
+        say(fault);
+    }
     assert!(faults.is_empty(), "{} faults", faults.len());
     assert!(3 * e(1) <= 2 * e(0), "a third of all irregular elements goes at least");
 }
