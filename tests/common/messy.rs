@@ -16,7 +16,7 @@ const GROWTH: f64 = 1.15;
 /// as they are from what is between them, in mean edges.
 const PROBE_GAP_EDGES: f64 = 0.29;
 /// Distances are sampled; this much of the diagonal is not seen.
-const NOISE_REL: f64 = 1e-6;
+const NOISE_REL: f64 = 2e-5;
 
 /// A mesh to clean, and the surface that it was made from.
 pub(crate) struct Messy {
