@@ -6,6 +6,7 @@
 //! Quad-Dominant Meshes*, 2013). Data flows one way:
 //! read → mesh → lift → plan → edit → lower → smooth → measure → write.
 
+pub mod batch;
 pub mod config;
 pub mod elements;
 pub mod io;

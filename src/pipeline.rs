@@ -21,6 +21,7 @@ use crate::surface::{
 };
 use crate::watch::{Phase, Watch};
 use serde::Serialize;
+use std::sync::Arc;
 use thiserror::Error;
 
 /// A mesh farther than this from its reference in the mean, relative to the diagonal of the
@@ -84,6 +85,8 @@ pub struct Report {
     /// of the edits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub conversion: Option<Conversion>,
+    /// Whether the run was told to stop before it was done.
+    pub stopped: bool,
 }
 
 /// A cleaned mesh and how it came about.
@@ -109,11 +112,16 @@ pub fn clean(
     let raw = mesh.clone();
     let (mesh, mends) = mend(mesh, policy)?;
     let surface = reference.unwrap_or(&mesh);
+    watch.progress(Phase::Reference, 0, 1, None);
+    let reference = Arc::new(Reference::new(surface)?);
     watch.progress(Phase::Measure, 0, 2, None);
-    let target = Target::new(surface, &config.measure)?;
+    let target = Target::on(Arc::clone(&reference), surface, &config.measure);
     let before = measure(&raw, Some(&target))?;
+    let faces = raw.face_count();
+    drop(raw);
     let Edited { q, feature_edges, schedule, conversion } =
-        edit((&mesh, raw.face_count()), surface, config, watch)?;
+        edit((&mesh, faces), &reference, config, watch)?;
+    let stopped = watch.cancelled();
     let result = lower(&q, mesh.group_names())?.mesh;
     check(&result).map_err(CleanError::Flawed)?;
     watch.progress(Phase::Measure, 1, 2, None);
@@ -121,7 +129,7 @@ pub fn clean(
     let Schedule { edits, rounds, .. } = schedule;
     Ok(Cleaned {
         mesh: result,
-        report: Report { mends, feature_edges, before, after, edits, rounds, conversion },
+        report: Report { mends, feature_edges, before, after, edits, rounds, conversion, stopped },
     })
 }
 
@@ -146,8 +154,9 @@ pub fn plan(
 ) -> Result<Planned, CleanError> {
     let faces = mesh.face_count();
     let (mesh, _) = mend(mesh, policy)?;
-    let Edited { q, schedule, .. } =
-        edit((&mesh, faces), reference.unwrap_or(&mesh), config, watch)?;
+    watch.progress(Phase::Reference, 0, 1, None);
+    let reference = Reference::new(reference.unwrap_or(&mesh))?;
+    let Edited { q, schedule, .. } = edit((&mesh, faces), &reference, config, watch)?;
     let Schedule { edits, rounds, .. } = schedule;
     Ok(Planned { edits, rounds, mesh: lower(&q, mesh.group_names())?.mesh })
 }
@@ -163,21 +172,22 @@ struct Edited {
 /// Lifts, plans, edits and smooths a mended mesh that had so many faces before.
 fn edit(
     (mesh, faces): (&PolyMesh, usize),
-    surface: &PolyMesh,
+    reference: &Reference,
     config: &Config,
     watch: &dyn Watch,
 ) -> Result<Edited, CleanError> {
     watch.progress(Phase::Reference, 0, 1, None);
-    let reference = Reference::new(surface)?;
     let topology = Topology::new(mesh);
-    let budget = budget(mesh, &reference, (&config.gate, mean_edge(mesh, &topology)))?;
-    let (mut q, feature_edges) = lift_held(mesh, &topology, &reference, &config.features)?;
+    let budget = budget(mesh, reference, (&config.gate, mean_edge(mesh, &topology)))?;
+    let (mut q, feature_edges) = lift_held(mesh, &topology, reference, &config.features)?;
+    let mean_edge = mean_edge(mesh, &topology);
+    drop(topology);
     let automation = Automation {
-        reference: &reference,
-        orientation: smooth::orientation(mesh, &reference),
+        reference,
+        orientation: smooth::orientation(mesh, reference),
         budget,
         faces,
-        mean_edge: mean_edge(mesh, &topology),
+        mean_edge,
         plan: &config.plan,
         costs: &config.cost,
         gate: &config.gate,
@@ -187,7 +197,7 @@ fn edit(
     let mut schedule = automation.run(&mut q, watch)?;
     let mut conversion = None;
     if config.plan.pure_quad {
-        let surface = (&reference, automation.orientation);
+        let surface = (reference, automation.orientation);
         let done = pure_quad::convert_cleaned(&mut q, surface, budget, config, watch)?;
         note_conversion(&mut schedule, &q, &done);
         conversion = Some(done);

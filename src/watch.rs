@@ -30,6 +30,16 @@ pub trait Watch: Sync {
         let _ = (phase, done, total, irregular);
     }
 
+    /// Stage `stage` of `stages` of planning begins, counted from 0; each takes about as long.
+    fn stage(&self, stage: u32, stages: u32) {
+        let _ = (stage, stages);
+    }
+
+    /// So many edits have been made so far; this is the irregularity that is left.
+    fn edited(&self, edits: usize, irregularity: u64) {
+        let _ = (edits, irregularity);
+    }
+
     /// Whether the caller wants the best result so far instead of more work.
     fn cancelled(&self) -> bool {
         false

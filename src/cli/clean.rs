@@ -15,6 +15,7 @@ use super::limits::{self, Limit};
 use super::look::Look;
 use super::paths::{self, is_stream};
 use super::source::{Begun, Source};
+use super::stop::Patience;
 use super::{output, pictures, summary};
 
 const EXAMPLES: &str = "\
@@ -26,6 +27,7 @@ Examples:
   quadmend clean remesh.obj -o clean.obj --json report.json --fail-if 't_junctions>0'
   quadmend clean remesh.obj -o clean.obj --log edits.toml
   quadmend edit remesh.obj --script edits.toml -o clean.obj    # the same bytes
+  quadmend clean remesh.obj -o clean.obj --time-limit 60       # the best of a minute
 
 Faults that can be mended without a doubt (torn edges, turned faces, doublets, stray vertices) are
 mended first and told. Boundaries and sharp features stay where they are. The table before/after
@@ -72,13 +74,16 @@ pub(super) struct Clean {
     source: Source,
 
     #[command(flatten)]
+    patience: Patience,
+
+    #[command(flatten)]
     look: Look,
 }
 
 impl Clean {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
         self.check_paths()?;
-        let begun = self.source.begin()?;
+        let begun = self.source.begin(self.patience.begin()?)?;
         let Begun { progress, config, input, policy, .. } = &begun;
         let cleaned = clean(input.mesh.clone(), begun.surface(), *policy, config, progress)
             .map_err(|e| self.source.failure(e))?;
@@ -96,7 +101,9 @@ impl Clean {
         }
         begun.progress.finish();
         self.tell(&cleaned.report)?;
-        Ok(limits::check(&self.fail_if, &cleaned.report.after, summary::exit(&cleaned.report)))
+        let exit =
+            limits::check(&self.fail_if, &cleaned.report.after, summary::exit(&cleaned.report));
+        Ok(begun.stop.exit(exit))
     }
 
     /// Pictures and the report for people.

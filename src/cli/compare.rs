@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use quadmend::batch;
 use quadmend::elements::Inspection;
 use quadmend::metrics::{METRICS, Metrics, table};
 use quadmend::report::{Document, Entry};
@@ -130,16 +131,7 @@ fn csv<'a>(files: &[&Path], metrics: impl Iterator<Item = &'a Metrics>) -> Strin
     for (file, metrics) in files.iter().zip(metrics) {
         let cell = |value: Option<f64>| value.map(|v| v.to_string()).unwrap_or_default();
         let cells: Vec<String> = METRICS.iter().map(|m| cell((m.value)(metrics))).collect();
-        rows.push(format!("{},{}\n", quoted(&file.display().to_string()), cells.join(",")));
+        rows.push(format!("{},{}\n", batch::quoted(&file.display().to_string()), cells.join(",")));
     }
     rows.concat()
-}
-
-/// In quotes where commas, quotes or line breaks would be misread (RFC 4180).
-fn quoted(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
-    }
 }

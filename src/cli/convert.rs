@@ -13,6 +13,7 @@ use quadmend::watch::{Phase, Watch};
 use super::failure::Failure;
 use super::paths::is_stream;
 use super::source::{Begun, Source};
+use super::stop::Patience;
 use super::{Exit, output, summary};
 
 const EXAMPLES: &str = "\
@@ -51,6 +52,9 @@ pub(super) struct Convert {
 
     #[command(flatten)]
     source: Source,
+
+    #[command(flatten)]
+    patience: Patience,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -78,7 +82,7 @@ enum First {
 impl Convert {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
         self.check_arguments()?;
-        let begun = self.source.begin()?;
+        let begun = self.source.begin(self.patience.begin()?)?;
         match self.to {
             Kind::PureQuad => self.pure_quad(begun),
             kind => self.view(begun, kind),
@@ -107,7 +111,7 @@ impl Convert {
         }
         begun.progress.finish();
         self.tell(&converted.report)?;
-        Ok(exit(&converted.report))
+        Ok(begun.stop.exit(exit(&converted.report)))
     }
 
     fn tell(&self, report: &Report) -> Result<(), Failure> {

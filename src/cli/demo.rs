@@ -11,6 +11,7 @@ use quadmend::pipeline::{Cleaned, clean};
 use super::aftermath::Aftermath;
 use super::failure::Failure;
 use super::settings::Running;
+use super::stop::Stop;
 use super::{Exit, output, summary};
 
 /// The mesh to be cleaned; `assets/README.md` says how it was made.
@@ -42,7 +43,7 @@ pub(super) struct Demo {
 impl Demo {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
         output::folder(&self.output)?;
-        let progress = self.running.start()?;
+        let progress = self.running.start(Stop::default())?;
         let (mesh, reference) = (embedded(SAMPLE)?, embedded(REFERENCE)?);
         let config = Config::default();
         let surface = Some(&reference.mesh);

@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use super::failure::Failure;
 use super::source::Source;
+use super::stop::Stop;
 use super::{Exit, output};
 
 const EXAMPLES: &str = "\
@@ -88,7 +89,7 @@ impl Edit {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
         self.check_paths()?;
         let script = self.read_script()?;
-        let begun = self.source.begin()?;
+        let begun = self.source.begin(Stop::default())?;
         let options = (&begun.config, self.caution.keep_going);
         let (mesh, surface) = (begun.input.mesh.clone(), begun.surface());
         let edited = edit(mesh, surface, begun.policy, &script, options, &begun.progress)?;

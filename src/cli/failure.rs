@@ -31,9 +31,8 @@ impl Failure {
         Self { exit: Exit::BadInput, error: anyhow!(error).context(file.to_owned()) }
     }
 
-    /// Says on standard error what went wrong, with its causes in one line, and gives the exit
-    /// code.
-    pub(super) fn report(&self) -> Exit {
+    /// What went wrong, with its causes, in one line.
+    pub(super) fn words(&self) -> String {
         let mut told = String::new();
         for cause in self.error.chain().map(ToString::to_string) {
             // Many errors quote their cause; nobody needs to read it twice.
@@ -43,7 +42,12 @@ impl Failure {
                 told = format!("{told}: {cause}");
             }
         }
-        output::note(&format!("error: {told}"));
+        told
+    }
+
+    /// Says on standard error what went wrong, and gives the exit code.
+    pub(super) fn report(&self) -> Exit {
+        output::note(&format!("error: {}", self.words()));
         self.exit
     }
 }

@@ -11,6 +11,7 @@ use quadmend::watch::{Phase, Watch};
 use super::failure::Failure;
 use super::paths;
 use super::settings::{Running, Settings};
+use super::stop::Stop;
 
 /// Against what and how to measure.
 #[derive(Debug, Args)]
@@ -53,7 +54,7 @@ impl Measuring {
             files.iter().map(AsRef::as_ref).chain(self.reference.as_deref()).collect();
         paths::read_stdin_once(&inputs)?;
         let config = self.settings.load()?;
-        let progress = self.running.start()?;
+        let progress = self.running.start(Stop::default())?;
         let reference = self.reference.as_deref().map(|path| progress.load(path)).transpose()?;
         let target = self.target(reference.as_ref(), &config)?;
         let mut meshes = Vec::new();

@@ -6,6 +6,7 @@
 //! *Invariant:* this is the only place that prints, looks at the clock or at the terminal.
 
 mod aftermath;
+mod batch;
 mod clean;
 mod compare;
 mod config;
@@ -27,6 +28,7 @@ mod progress;
 mod render;
 mod settings;
 mod source;
+mod stop;
 mod summary;
 mod tune;
 
@@ -50,6 +52,8 @@ enum Exit {
     /// A limit of `--fail-if` was missed, or not every face could be made a quad; the output was
     /// written all the same.
     LimitMissed = 4,
+    /// Somebody ended the run; what it had by then was written.
+    Interrupted = 130,
 }
 
 const EXIT_CODES: &str = "\
@@ -57,15 +61,16 @@ Exit codes:
   0  done
   1  nothing to improve (the output is written all the same)
   2  usage or configuration
-  3  bad input; nothing is written
+  3  bad input; nothing is written (`batch`: not every mesh could be cleaned)
   4  a limit given with --fail-if was missed, or not every face could be made a quad (the output
      is written all the same)
-130  interrupted";
+130  interrupted: the best mesh so far is written (nothing is after a second interrupt)";
 
 const EXAMPLES: &str = "\
 Examples:
   quadmend demo                                             try it on the sample mesh
   quadmend clean remesh.obj --reference scan.obj -o clean.obj
+  quadmend batch 'in/*.obj' --out cleaned                   clean many
   quadmend metrics remesh.obj                               what is wrong with it?
   quadmend compare remesh.obj clean.obj --reference scan.obj
   quadmend edit remesh.obj --script edits.toml -o edited.obj   make chosen edits
@@ -86,6 +91,7 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Clean(clean::Clean),
+    Batch(batch::Batch),
     Metrics(metrics::MetricsCommand),
     Compare(compare::Compare),
     Plan(plan::Plan),
@@ -108,6 +114,7 @@ pub(crate) fn main() -> ExitCode {
 fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
         Command::Clean(command) => command.run(),
+        Command::Batch(command) => command.run(),
         Command::Metrics(command) => command.run(),
         Command::Compare(command) => command.run(),
         Command::Plan(command) => command.run(),

@@ -12,6 +12,7 @@ use quadmend::watch::{Phase, Watch};
 use super::failure::Failure;
 use super::paths::is_stream;
 use super::source::Source;
+use super::stop::Patience;
 use super::{Exit, output};
 
 const EXAMPLES: &str = "\
@@ -43,6 +44,9 @@ pub(super) struct Optimize {
 
     #[command(flatten)]
     source: Source,
+
+    #[command(flatten)]
+    patience: Patience,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -56,7 +60,7 @@ enum Goal {
 impl Optimize {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
         self.check_paths()?;
-        let begun = self.source.begin()?;
+        let begun = self.source.begin(self.patience.begin()?)?;
         let goal = match self.goal {
             Goal::Planar => optimize::Goal::Planar,
             Goal::Angles => optimize::Goal::Angles,
@@ -71,7 +75,7 @@ impl Optimize {
         }
         begun.progress.finish();
         self.tell(&done.report)?;
-        Ok(Exit::Done)
+        Ok(begun.stop.exit(Exit::Done))
     }
 
     fn check_paths(&self) -> Result<(), Failure> {

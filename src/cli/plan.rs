@@ -12,6 +12,7 @@ use quadmend::report;
 use super::failure::Failure;
 use super::paths::is_stream;
 use super::source::Source;
+use super::stop::Patience;
 use super::{Exit, output};
 
 const EXAMPLES: &str = "\
@@ -40,12 +41,15 @@ pub(super) struct Plan {
 
     #[command(flatten)]
     source: Source,
+
+    #[command(flatten)]
+    patience: Patience,
 }
 
 impl Plan {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
         self.check_paths()?;
-        let begun = self.source.begin()?;
+        let begun = self.source.begin(self.patience.begin()?)?;
         let planned = plan(
             begun.input.mesh.clone(),
             begun.surface(),
@@ -62,7 +66,8 @@ impl Plan {
         if !self.output.as_deref().is_some_and(is_stream) {
             output::data(&if self.json { output::json(edits)? } else { table(edits) })?;
         }
-        Ok(if edits.is_empty() { Exit::NothingToImprove } else { Exit::Done })
+        let exit = if edits.is_empty() { Exit::NothingToImprove } else { Exit::Done };
+        Ok(begun.stop.exit(exit))
     }
 
     fn check_paths(&self) -> Result<(), Failure> {

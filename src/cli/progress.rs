@@ -14,6 +14,7 @@ use quadmend::watch::{Phase, Watch};
 
 use super::failure::Failure;
 use super::output;
+use super::stop::Stop;
 
 /// Time between two lines where there is no terminal.
 const PAUSE: Duration = Duration::from_secs(2);
@@ -23,6 +24,7 @@ const PAUSE: Duration = Duration::from_secs(2);
 pub(super) struct Progress {
     show: Show,
     verbose: bool,
+    stop: Stop,
     state: Mutex<State>,
 }
 
@@ -45,10 +47,49 @@ struct State {
     /// When the work began.
     started: Instant,
     /// How the irregularity fell: when, and what it was from then on.
-    fall: Vec<(Duration, usize)>,
+    fall: Vec<(Duration, u64)>,
+    planning: Planning,
+}
+
+/// How far planning is.
+#[derive(Debug, Default)]
+struct Planning {
+    /// When the first stage began, and the present one.
+    began: Option<[Instant; 2]>,
+    stage: u32,
+    stages: u32,
+    edits: usize,
+}
+
+impl Planning {
+    fn enter(&mut self, stage: u32, stages: u32) {
+        let now = Instant::now();
+        self.began = Some([self.began.map_or(now, |began| began[0]), now]);
+        (self.stage, self.stages) = (stage, stages);
+    }
+
+    /// Edits per second since planning began.
+    fn speed(&self) -> Option<f64> {
+        let seconds = self.began?[0].elapsed().as_secs_f64();
+        (seconds > 0.0 && self.edits > 0).then(|| self.edits as f64 / seconds)
+    }
+
+    /// How long it will take yet, if the stages to come take as long as those that are over.
+    fn left(&self) -> Option<Duration> {
+        let [first, present] = self.began?;
+        let each = (present - first).checked_div(self.stage)?;
+        let rest = each * (self.stages - self.stage);
+        Some(rest.saturating_sub(present.elapsed()))
+    }
 }
 
 impl State {
+    fn note_irregularity(&mut self, e: u64) {
+        if self.fall.last().is_none_or(|last| last.1 != e) {
+            self.fall.push((self.started.elapsed(), e));
+        }
+    }
+
     /// Adds the time of the phase that ends now.
     fn count_time(&mut self) {
         if let Some(phase) = self.phase {
@@ -59,8 +100,8 @@ impl State {
 }
 
 impl Progress {
-    /// Silent, or what suits standard error.
-    pub(super) fn new(quiet: bool, verbose: bool) -> Self {
+    /// Silent, or what suits standard error; the run ends with what it has when `stop` says so.
+    pub(super) fn new(quiet: bool, verbose: bool, stop: Stop) -> Self {
         let show = match (quiet, stderr().is_terminal()) {
             (true, _) => Show::Nothing,
             (false, true) => Show::Bar(bar()),
@@ -74,8 +115,9 @@ impl Progress {
             spent: BTreeMap::new(),
             started: now,
             fall: Vec::new(),
+            planning: Planning::default(),
         };
-        Self { show, verbose, state: Mutex::new(state) }
+        Self { show, verbose, stop, state: Mutex::new(state) }
     }
 
     /// Says something on standard error without spoiling the bar; nothing if quiet.
@@ -124,6 +166,16 @@ impl Progress {
         }
     }
 
+    /// E so far, the speed, and the time left.
+    fn words(&self, state: &State) -> Vec<String> {
+        let e = state.fall.last().map(|(_, e)| format!("E {e}"));
+        let speed = state.planning.speed().map(|speed| format!("{speed:.1} edits/s"));
+        let left = state.planning.left().filter(|_| state.phase == Some(Phase::Plan));
+        let left = [left, self.stop.left()].into_iter().flatten().min();
+        let left = left.map(|left| format!("{:.0} s left", left.as_secs_f64()));
+        [e, speed, left].into_iter().flatten().collect()
+    }
+
     fn enter(&self, state: &mut State, phase: Phase) {
         state.count_time();
         state.phase = Some(phase);
@@ -153,24 +205,37 @@ impl Watch for Progress {
         if state.phase != Some(phase) {
             self.enter(&mut state, phase);
         }
-        if let Some(n) = irregular.filter(|&n| state.fall.last().is_none_or(|last| last.1 != n)) {
-            let when = state.started.elapsed();
-            state.fall.push((when, n));
+        if let Some(n) = irregular {
+            state.note_irregularity(n as u64);
         }
-        let left = irregular.map(|n| format!("{n} irregular")).unwrap_or_default();
         match &self.show {
             Show::Bar(bar) => {
                 bar.set_length(total as u64);
                 bar.set_position(done as u64);
-                bar.set_message(left);
+                bar.set_message(self.words(&state).join(", "));
             }
             Show::Lines if state.told.elapsed() >= PAUSE => {
                 state.told = Instant::now();
-                let comma = if left.is_empty() { "" } else { ", " };
-                output::note(&format!("{}: {done} of {total}{comma}{left}", words(phase)));
+                let far = format!("{}: {done} of {total}", words(phase));
+                let all: Vec<String> = std::iter::once(far).chain(self.words(&state)).collect();
+                output::note(&all.join(", "));
             }
             Show::Nothing | Show::Lines => {}
         }
+    }
+
+    fn stage(&self, stage: u32, stages: u32) {
+        self.lock().planning.enter(stage, stages);
+    }
+
+    fn edited(&self, edits: usize, irregularity: u64) {
+        let mut state = self.lock();
+        state.planning.edits = edits;
+        state.note_irregularity(irregularity);
+    }
+
+    fn cancelled(&self) -> bool {
+        self.stop.cause().is_some()
     }
 }
 

@@ -12,6 +12,7 @@ use super::failure::Failure;
 use super::look::{Look, Shown};
 use super::paths::{self, Files};
 use super::settings::{Running, Settings};
+use super::stop::Stop;
 use super::{Exit, output};
 
 const EXAMPLES: &str = "\
@@ -58,7 +59,7 @@ impl Render {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
         self.check_paths()?;
         let config = self.settings.load()?;
-        let progress = self.running.start()?;
+        let progress = self.running.start(Stop::default())?;
         progress.progress(Phase::Read, 0, 1, None);
         let meshes: Vec<PolyMesh> =
             self.meshes.iter().map(|path| progress.read(path)).collect::<Result<_, _>>()?;

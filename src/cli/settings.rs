@@ -9,6 +9,7 @@ use quadmend::config::{Config, PRESETS};
 
 use super::failure::Failure;
 use super::progress::Progress;
+use super::stop::Stop;
 
 /// Where the values of the knobs come from: defaults ← preset ← file ← assignments.
 #[derive(Debug, Args)]
@@ -57,14 +58,14 @@ pub(super) struct Running {
 }
 
 impl Running {
-    /// Sets the number of threads and gives what watches the run.
-    pub(super) fn start(&self) -> Result<Progress, Failure> {
+    /// Sets the number of threads and gives what watches the run until it is over or to `stop`.
+    pub(super) fn start(&self, stop: Stop) -> Result<Progress, Failure> {
         if let Some(threads) = self.threads {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get());
             pool.build_global().map_err(|e| {
                 Failure::usage(format!("cannot compute with {threads} threads: {e}"))
             })?;
         }
-        Ok(Progress::new(self.quiet, self.verbose))
+        Ok(Progress::new(self.quiet, self.verbose, stop))
     }
 }

@@ -12,6 +12,7 @@ use super::failure::Failure;
 use super::paths::{self, Files};
 use super::progress::Progress;
 use super::settings::{Running, Settings};
+use super::stop::Stop;
 
 /// A mesh, the surface that it stays on, and the settings.
 #[derive(Debug, Args)]
@@ -46,6 +47,7 @@ pub(super) struct Begun {
     pub(super) input: Loaded,
     pub(super) reference: Option<Loaded>,
     pub(super) policy: MendPolicy,
+    pub(super) stop: Stop,
 }
 
 impl Begun {
@@ -56,15 +58,15 @@ impl Begun {
 }
 
 impl Source {
-    /// Reads the configuration, the mesh and its reference.
-    pub(super) fn begin(&self) -> Result<Begun, Failure> {
+    /// Reads the configuration, the mesh and its reference for a run that may be told to `stop`.
+    pub(super) fn begin(&self, stop: Stop) -> Result<Begun, Failure> {
         let config = self.settings.load()?;
-        let progress = self.running.start()?;
+        let progress = self.running.start(stop)?;
         progress.progress(Phase::Read, 0, 1, None);
         let input = progress.load(&self.input)?;
         let reference = self.reference.as_deref().map(|path| progress.load(path)).transpose()?;
         let policy = if self.strict { MendPolicy::Strict } else { MendPolicy::Mend };
-        Ok(Begun { progress, config, input, reference, policy })
+        Ok(Begun { progress, config, input, reference, policy, stop })
     }
 
     /// Finds what is wrong with the files of a command before the work is done: `script` is read

@@ -21,6 +21,9 @@ pub(super) fn work(report: &Report) -> String {
         ),
     });
     lines.extend(report.conversion.iter().flat_map(not_quads));
+    if report.stopped {
+        lines.push("stopped before it was done: this is the best mesh so far".to_owned());
+    }
     lines.join("\n") + "\n"
 }
 

@@ -14,6 +14,7 @@ use super::failure::Failure;
 use super::paths::{self, Files};
 use super::progress::Progress;
 use super::settings::{Running, Settings};
+use super::stop::Stop;
 use super::{Exit, output};
 
 /// Stands for the name of a mesh in the path of its reference.
@@ -98,7 +99,7 @@ impl Tune {
         let (task, start) = (self.task()?, self.settings.load()?);
         let files = self.files()?;
         self.check_paths(&files)?;
-        let progress = self.running.start()?;
+        let progress = self.running.start(Stop::default())?;
         let cases = self.cases(&files, &progress)?;
         output::folder(&self.output)?;
         let console = Console {

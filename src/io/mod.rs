@@ -320,7 +320,8 @@ fn display_name(path: &Path, stream: &str) -> String {
 }
 
 /// SHA-256 of `bytes`, in hexadecimal digits.
-fn fingerprint(bytes: &[u8]) -> String {
+#[must_use]
+pub fn fingerprint(bytes: &[u8]) -> String {
     use sha2::{Digest, Sha256};
     use std::fmt::Write;
     Sha256::digest(bytes).iter().fold(String::new(), |mut text, byte| {

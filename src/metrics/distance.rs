@@ -12,12 +12,13 @@ use super::{MeasureOptions, MetricsError, connectivity};
 use crate::mesh::{Point, PolyMesh, Topology};
 use crate::surface::{Hit, Reference};
 use serde::Serialize;
+use std::sync::Arc;
 
 /// A reference surface made ready to measure meshes against.
 #[derive(Debug)]
 pub struct Target {
     options: MeasureOptions,
-    surface: Reference,
+    surface: Arc<Reference>,
     /// Samples first, then the used vertices.
     probes: Vec<Point>,
     sample_count: usize,
@@ -28,11 +29,17 @@ impl Target {
     /// Prepares `mesh` as the reference. O(n log n) for n corners.
     pub fn new(mesh: &PolyMesh, options: &MeasureOptions) -> Result<Self, MetricsError> {
         let surface = Reference::plain(mesh).map_err(MetricsError::Reference)?;
+        Ok(Self::on(Arc::new(surface), mesh, options))
+    }
+
+    /// The same with the `surface` of `mesh`, which is there already. O(n) for n corners.
+    #[must_use]
+    pub fn on(surface: Arc<Reference>, mesh: &PolyMesh, options: &MeasureOptions) -> Self {
         let mut probes = surface.samples(options.samples as usize);
         let sample_count = probes.len();
         probes.extend(used_points(mesh));
         let lines = Lines::new(mesh, &Topology::new(mesh), options.feature_angle_deg);
-        Ok(Self { options: options.clone(), surface, probes, sample_count, lines })
+        Self { options: options.clone(), surface, probes, sample_count, lines }
     }
 
     /// The surface itself.

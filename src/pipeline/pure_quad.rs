@@ -11,9 +11,10 @@ use crate::metrics::{Metrics, Target, measure};
 use crate::moves::pure::{self, Conversion, Kind};
 use crate::smooth::{Budget, Orientation, RelaxOptions, Surroundings, orientation, smooth};
 use crate::sqrtcc::{QuadMesh, Vertex, lower};
-use crate::surface::{Reference, deviation, mean_edge};
+use crate::surface::{Reference, mean_edge};
 use crate::watch::{Phase, Watch};
 use serde::Serialize;
+use std::sync::Arc;
 
 /// Rings of faces around a change that are relaxed with it.
 const RINGS: u32 = 3;
@@ -21,10 +22,6 @@ const RINGS: u32 = 3;
 const SWEEPS: u32 = 24;
 /// A change after which a quad has a scaled Jacobian below this is made only if there is no other.
 const POOR: f64 = 0.25;
-/// Samples each way for the distance before smoothing.
-const SAMPLES: usize = 20_000;
-/// Room for a budget that is met exactly: none at all and smoothing could only stand still.
-const HARDLY_MORE: f64 = 1.002;
 
 /// What was done to a mesh.
 #[derive(Debug, Clone, Serialize)]
@@ -63,9 +60,10 @@ pub fn pure_quad(
     let (mesh, mends) = mend(mesh, policy)?;
     let surface = reference.unwrap_or(&mesh);
     watch.progress(Phase::Measure, 0, 2, None);
-    let target = Target::new(surface, &config.measure)?;
+    let reference = Arc::new(Reference::new(surface)?);
+    let target = Target::on(Arc::clone(&reference), surface, &config.measure);
     let before = measure(&raw, Some(&target))?;
-    let (q, feature_edges, conversion) = edit(&mesh, surface, config, watch)?;
+    let (q, feature_edges, conversion) = edit(&mesh, &reference, config, watch)?;
     let result = lower(&q, mesh.group_names())?.mesh;
     check(&result).map_err(CleanError::Flawed)?;
     watch.progress(Phase::Measure, 1, 2, None);
@@ -77,18 +75,17 @@ pub fn pure_quad(
 /// Lifts, converts and smooths; also the number of feature edges.
 fn edit(
     mesh: &PolyMesh,
-    surface: &PolyMesh,
+    reference: &Reference,
     config: &Config,
     watch: &dyn Watch,
 ) -> Result<(QuadMesh, usize, Conversion), CleanError> {
-    let reference = Reference::new(surface)?;
     let topology = Topology::new(mesh);
-    let allowed = budget(mesh, &reference, (&config.gate, mean_edge(mesh, &topology)))?;
-    let (mut q, feature_edges) = lift_held(mesh, &topology, &reference, &config.features)?;
-    let surface = (&reference, orientation(mesh, &reference));
+    let allowed = budget(mesh, reference, (&config.gate, mean_edge(mesh, &topology)))?;
+    let (mut q, feature_edges) = lift_held(mesh, &topology, reference, &config.features)?;
+    let surface = (reference, orientation(mesh, reference));
     let Settled { conversion, touched } =
         convert_settled(&mut q, Kind::Faces, surface, &config.relax, watch);
-    smooth_within(&mut q, Some(&touched), (&reference, allowed), config, watch)?;
+    smooth_within(&mut q, Some(&touched), (reference, allowed), config, watch)?;
     q.commit();
     Ok((q, feature_edges, conversion))
 }
@@ -153,13 +150,9 @@ fn smooth_within(
         lowered.vertex_ids.iter().map(|&v| held[v as usize]).collect()
     });
     let held: Vec<bool> = held.unwrap_or_else(|| lowered.held.clone());
-    let start = Reference::plain(&lowered.mesh).map(|m| deviation(&m, reference, SAMPLES));
-    let start = start.unwrap_or_default();
-    let limit =
-        |allowed: f64, start: f64| (allowed * config.smooth.budget).max(HARDLY_MORE * start);
     let budget = Budget {
-        hausdorff: limit(allowed.hausdorff, start.hausdorff),
-        rms: limit(allowed.rms, start.rms),
+        rms: allowed.rms * config.smooth.budget,
+        hausdorff: allowed.hausdorff * config.smooth.budget,
     };
     let options = (&config.smooth, &config.relax);
     let (points, _) = smooth(&lowered.mesh, &held, reference, options, Some(budget), watch);

@@ -11,7 +11,7 @@ use crate::mesh::MeshError;
 use crate::moves;
 use crate::smooth::{self, Budget, Orientation, RelaxOptions, SmoothOptions};
 use crate::sqrtcc::{QuadMesh, Vertex, lower};
-use crate::surface::{Reference, deviation};
+use crate::surface::Reference;
 use crate::watch::Watch;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -40,16 +40,12 @@ pub struct Automation<'a> {
     pub smooth: &'a SmoothOptions,
 }
 
-/// Samples each way for the distance before smoothing.
-const SAMPLES: usize = 20_000;
-/// Room for a budget that is met exactly: none at all and smoothing could only stand still.
-const HARDLY_MORE: f64 = 1.002;
 /// How many times its even share of the slack in distance an element may use up.
 const GREED: f64 = 16.0;
 
 impl Automation<'_> {
-    /// Edits and smooths `mesh`; what was done. If cancelled, the mesh is valid and smoothed as
-    /// far as it got.
+    /// Edits and smooths `mesh`; what was done. If cancelled, no more edits are looked for, and the
+    /// mesh is smoothed for as many iterations as a hurried run has.
     pub fn run(&self, mesh: &mut QuadMesh, watch: &dyn Watch) -> Result<Schedule, MeshError> {
         let faces = mesh.vertices().filter(|&v| mesh.is_face(v)).count();
         let size =
@@ -59,8 +55,9 @@ impl Automation<'_> {
         contact.attach(mesh, self.reference)?;
         let floor = contact.probe_count() as f64 * self.budget.rms.powi(2);
         let allowed = self.gate.rms.powi(2) * contact.squared_distances().max(floor);
-        self.smooth(mesh, self.plan.smooth_between, watch)?;
-        for i in 0..self.plan.stages {
+        self.smooth_between(mesh, watch)?;
+        for i in (0..self.plan.stages).take_while(|_| !watch.cancelled()) {
+            watch.stage(i, self.plan.stages);
             contact.attach(mesh, self.reference)?;
             let (lambda, faces) = (self.plan.lambda(i), self.patch_faces(i));
             schedule.restart(allowed - contact.squared_distances());
@@ -79,15 +76,17 @@ impl Automation<'_> {
             let groups = (Stage::Groups { faces }, lambda);
             self.rounds((mesh, &mut contact), &mut schedule, groups, watch);
             if i + 1 < self.plan.stages {
-                self.smooth(mesh, self.plan.smooth_between, watch)?;
+                self.smooth_between(mesh, watch)?;
             }
         }
-        contact.attach(mesh, self.reference)?;
-        schedule.restart(allowed - contact.squared_distances());
-        let types = (Stage::Types, self.plan.lambda_types);
-        self.rounds((mesh, &mut contact), &mut schedule, types, watch);
+        if !watch.cancelled() {
+            contact.attach(mesh, self.reference)?;
+            schedule.restart(allowed - contact.squared_distances());
+            let types = (Stage::Types, self.plan.lambda_types);
+            self.rounds((mesh, &mut contact), &mut schedule, types, watch);
+        }
         self.release_pins(mesh);
-        self.smooth(mesh, self.smooth.iterations, watch)?;
+        self.smooth(mesh, self.smooth, watch)?;
         Ok(schedule)
     }
 
@@ -153,28 +152,30 @@ impl Automation<'_> {
         self.gate.hausdorff * self.budget.hausdorff
     }
 
+    /// Smooths before more edits; a run that is to stop leaves that to the smoothing at its end.
+    fn smooth_between(&self, mesh: &mut QuadMesh, watch: &dyn Watch) -> Result<(), MeshError> {
+        if watch.cancelled() {
+            return Ok(());
+        }
+        let iterations = self.plan.smooth_between;
+        let options = SmoothOptions { iterations, hurried: 0, ..self.smooth.clone() };
+        self.smooth(mesh, &options, watch)
+    }
+
     fn smooth(
         &self,
         mesh: &mut QuadMesh,
-        iterations: u32,
+        options: &SmoothOptions,
         watch: &dyn Watch,
     ) -> Result<(), MeshError> {
         let polygons = lower(mesh, &[String::new()])?;
-        let options = SmoothOptions { iterations, ..self.smooth.clone() };
-        let start =
-            Reference::plain(&polygons.mesh).map(|m| deviation(&m, self.reference, SAMPLES));
-        let start = start.unwrap_or_default();
-        // Where edits have used up the budget, smoothing must not make it worse.
-        let limit = |budget: f64, start: f64| budget.max(HARDLY_MORE * start);
-        let budget = Budget {
-            hausdorff: limit(self.hausdorff(), start.hausdorff),
-            rms: limit(self.smooth.budget * self.budget.rms, start.rms),
-        };
+        let budget =
+            Budget { hausdorff: self.hausdorff(), rms: self.smooth.budget * self.budget.rms };
         let (points, _) = smooth::smooth(
             &polygons.mesh,
             &polygons.held,
             self.reference,
-            (&options, self.relax),
+            (options, self.relax),
             Some(budget),
             watch,
         );

@@ -151,6 +151,7 @@ impl Schedule {
         record.proposed = proposals.len();
         record.made = self.commit((mesh, contact), proposals, task);
         record.irregularity = mesh.total_irregularity();
+        watch.edited(self.edits.len(), record.irregularity);
         self.rounds.push(record);
         true
     }

@@ -27,9 +27,12 @@ pub(crate) fn watched(reference: &Reference, count: usize) -> Vec<Point> {
 pub(super) fn pull(kernel: &mut Kernel, mesh: &PolyMesh, places: &[Point], far: f64) -> usize {
     kernel.pulls.clear();
     let Ok(surface) = Reference::plain(mesh) else { return 0 };
-    let hits = surface.closest_many(places);
+    // A root may round either way: what is about as far as that is measured.
+    let lost = surface.farther_than(places, far * (1.0 - 1e-12));
+    let lost: Vec<Point> = lost.into_iter().map(|i| places[i as usize]).collect();
+    let hits = surface.closest_many(&lost);
     let mut count = 0;
-    for (place, hit) in places.iter().zip(&hits).filter(|(_, h)| h.distance > far) {
+    for (place, hit) in lost.iter().zip(&hits).filter(|(_, h)| h.distance > far) {
         if count == 0 {
             kernel.pulls.resize(mesh.vertex_count(), Target::default());
         }

@@ -5,12 +5,15 @@ use fixedbitset::FixedBitSet;
 use super::anchors::{pull, watched};
 use super::guard::{Budget, Finding, Guard, Limits, Mending};
 use super::kernel::Setting;
-use super::region::{Orientation, Region, orientation};
+use super::region::{Orientation, Region, at_centres, vote};
 use super::untangle::untangle;
 use super::{RelaxOptions, SmoothOptions};
 use crate::mesh::{NONE, Point, PolyMesh, Topology};
 use crate::surface::{Deviation, Reference};
 use crate::watch::{Phase, Watch};
+
+/// Room for a budget that is met exactly: none at all and smoothing could only stand still.
+const HARDLY_MORE: f64 = 1.002;
 
 /// How smoothing a mesh went.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,9 +51,10 @@ pub fn held_vertices(mesh: &PolyMesh, topology: &Topology, features: &FixedBitSe
 
 /// Moves the vertices of `mesh` that are not `held` for good face shapes; the new points.
 ///
-/// The result is within `budget` of the reference; without one, within
-/// [`SmoothOptions::budget`] times the distance of the start. If no limit can be kept anywhere,
-/// the points are those of the start. Cancelling gives what is reached so far, checked alike.
+/// The result is within `budget` of the reference, or hardly farther than the start where that is
+/// beyond it; without one, within [`SmoothOptions::budget`] times the distance of the start. If no limit can be kept anywhere,
+/// the points are those of the start. If `watch` cancels, it ends after
+/// [`SmoothOptions::hurried`] iterations or as soon as it can, checked alike.
 /// O(iterations · n), parallel; independent of the number of threads.
 ///
 /// # Panics
@@ -66,8 +70,12 @@ pub fn smooth(
 ) -> (Vec<Point>, SmoothReport) {
     assert_eq!(held.len(), mesh.vertex_count(), "one entry for each vertex");
     let mut work = Work::new(mesh, held, reference, (options, relax), budget);
-    work.iterate(watch);
-    let (points, found) = work.mend();
+    let (points, found) = if work.iterate(watch) {
+        work.land();
+        work.mend()
+    } else {
+        (mesh.points().to_vec(), work.start.clone())
+    };
     let kernel = &work.region.kernel;
     let report = SmoothReport {
         iterations: kernel.iterations,
@@ -82,7 +90,8 @@ pub fn smooth(
     (points, report)
 }
 
-/// The limits that follow from the start where none are given.
+/// The limits: the budget, or, where the start is beyond it, hardly more than that; without one,
+/// what follows from the start.
 pub(crate) fn limits(
     start: &Finding,
     options: &SmoothOptions,
@@ -91,10 +100,14 @@ pub(crate) fn limits(
 ) -> Limits {
     // What rounding alone does to a mesh that lies on its reference is not counted.
     let scaled = |d: f64| d * options.budget + diagonal * 1e-6;
-    let budget = budget.unwrap_or(Budget {
-        hausdorff: scaled(start.deviation.hausdorff),
-        rms: scaled(start.deviation.rms),
-    });
+    let Deviation { hausdorff, rms } = start.deviation;
+    let limit = |budget: Option<f64>, start: f64| {
+        budget.map_or(scaled(start), |budget| budget.max(HARDLY_MORE * start))
+    };
+    let budget = Budget {
+        hausdorff: limit(budget.map(|b| b.hausdorff), hausdorff),
+        rms: limit(budget.map(|b| b.rms), rms),
+    };
     Limits { budget, jacobian: options.least_jacobian }
 }
 
@@ -130,13 +143,14 @@ impl<'a> Work<'a> {
         (options, relax): (&'a SmoothOptions, &RelaxOptions),
         budget: Option<Budget>,
     ) -> Self {
-        let side = orientation(mesh, reference);
+        let centres = at_centres(mesh, reference);
+        let side = vote(mesh, reference, &centres);
         let (stress, project_every) = (options.stress, options.project_every);
         let relax = RelaxOptions { stress, project_every, ..relax.clone() };
         let samples = mesh.vertex_count().clamp(20_000, 200_000);
         let places = watched(reference, samples);
         let guard = Guard { reference, places, samples, sign: side.sign() };
-        let start = guard.check(mesh);
+        let start = guard.check_at(mesh, &centres);
         let limits = limits(&start, options, budget, reference.diagonal());
         let setting = Setting::new(&relax, side.sign(), true);
         let mut region = filled(mesh, held, side);
@@ -155,28 +169,36 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// Iterates until vertices are still, looking for lost places in between.
-    fn iterate(&mut self, watch: &dyn Watch) {
-        let total = self.options.iterations;
+    /// Iterates until vertices are still, looking for lost places in between; whether there is
+    /// anything to go on with.
+    fn iterate(&mut self, watch: &dyn Watch) -> bool {
+        let (total, hurried) = (self.options.iterations, self.options.hurried);
         let round = if self.options.anchor_every == 0 { total } else { self.options.anchor_every };
         let places = watched(self.guard.reference, self.mesh.vertex_count());
+        let stops = |done: u32| done >= hurried && watch.cancelled();
         let mut done = 0;
-        while done < total && !watch.cancelled() {
+        while done < total && !stops(done) {
             watch.progress(Phase::Smooth, done as usize, total as usize, None);
             let count = round.min(total - done);
             let kernel = &mut self.region.kernel;
-            kernel.run(self.guard.reference, &self.setting, (count, self.options.still_edges));
+            let until = (count, self.options.still_edges);
+            kernel.run(self.guard.reference, &self.setting, until, stops);
             done += count;
             if kernel.motion < self.options.still_edges {
                 break;
             }
-            if done < total && self.options.anchor_every > 0 {
+            if done < total && self.options.anchor_every > 0 && !stops(done) {
                 let points = kernel.vertices.iter().map(|v| v.point).collect();
                 self.mesh.set_points(points);
                 let far = self.options.anchor_share * self.limits.budget.hausdorff;
                 pull(kernel, &self.mesh, &places, far);
             }
         }
+        hurried > 0 || !watch.cancelled()
+    }
+
+    /// Puts the vertices where faces, not corners, lie on the reference, and unfolds quads.
+    fn land(&mut self) {
         self.region.kernel.land(self.guard.reference, &self.setting);
         self.region.kernel.fit(self.guard.reference, &self.setting, self.options.fit);
         self.mesh.set_points(self.region.kernel.vertices.iter().map(|v| v.point).collect());
@@ -293,13 +315,15 @@ mod tests {
     }
 
     #[test]
-    fn an_explicit_budget_is_kept_or_nothing_moves() {
+    fn a_start_beyond_its_budget_gets_hardly_worse() {
         let (mesh, fine) = (shaken(&spindle(10), 0.02), spindle(30));
         let surface = Reference::new(&fine).unwrap();
         let held = vec![false; mesh.vertex_count()];
         let options = (&SmoothOptions::default(), &RelaxOptions::default());
         let none = Budget { hausdorff: 0.0, rms: 0.0 };
-        let (points, _) = smooth(&mesh, &held, &surface, options, Some(none), &Silent);
-        assert_eq!(points, mesh.points());
+        let (points, report) = smooth(&mesh, &held, &surface, options, Some(none), &Silent);
+        assert!(points != mesh.points(), "there is room to move");
+        assert!(report.after.hausdorff <= HARDLY_MORE * report.before.hausdorff, "{report:?}");
+        assert!(report.after.rms <= HARDLY_MORE * report.before.rms, "{report:?}");
     }
 }

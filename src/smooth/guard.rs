@@ -5,6 +5,7 @@
 //! way back to where they were; after a few rounds they are back altogether.
 
 use super::kernel::Kernel;
+use super::region::at_centres;
 use crate::mesh::{Point, PolyMesh, Vector};
 use crate::surface::{Deviation, Hit, Reference};
 
@@ -51,6 +52,11 @@ pub(crate) struct Limits {
 impl Guard<'_> {
     /// Measures `mesh`. O(n log n), parallel.
     pub(crate) fn check(&self, mesh: &PolyMesh) -> Finding {
+        self.check_at(mesh, &at_centres(mesh, self.reference))
+    }
+
+    /// Measures a mesh whose faces have their centres at `centres` of the reference.
+    pub(super) fn check_at(&self, mesh: &PolyMesh, centres: &[Hit]) -> Finding {
         let n = mesh.face_count();
         let jacobian: Vec<f64> =
             mesh.faces().map(|face| scaled_jacobian(mesh.points(), face)).collect();
@@ -65,7 +71,7 @@ impl Guard<'_> {
         if let Ok(surface) = Reference::plain(mesh) {
             let away = self.away(&surface, &mut found);
             let back = self.back(&surface, &mut found);
-            self.centres(mesh, &mut found);
+            self.centres(mesh, centres, &mut found);
             let hausdorff = found.far.iter().copied().fold(0.0, f64::max);
             found.deviation = Deviation { hausdorff, rms: away.max(back).sqrt() };
         }
@@ -92,9 +98,7 @@ impl Guard<'_> {
     }
 
     /// Distances and sides of the centres of the faces.
-    fn centres(&self, mesh: &PolyMesh, found: &mut Finding) {
-        let centres: Vec<Point> = (0..mesh.face_count()).map(|f| mesh.centre(f)).collect();
-        let hits = self.reference.closest_many(&centres);
+    fn centres(&self, mesh: &PolyMesh, hits: &[Hit], found: &mut Finding) {
         found.note((0..).zip(hits.iter().map(|h| h.distance)), 0);
         for (f, hit) in hits.iter().enumerate() {
             let normal = self.reference.normal(hit.triangle) * self.sign;

@@ -159,16 +159,19 @@ impl Kernel {
         if count > 0.0 { f64::exp(sum / count) } else { 1.0 }
     }
 
-    /// Runs until `iterations` more are done or vertices move less than `still` edges.
-    ///
-    /// With `last` set the run ends with a projection of all vertices.
+    /// Runs until `iterations` more are done, vertices move less than `still` edges, or `stops`
+    /// says so, which is asked before each iteration.
     pub(super) fn run(
         &mut self,
         reference: &Reference,
         setting: &Setting,
         (iterations, still): (u32, f64),
+        stops: impl Fn(u32) -> bool,
     ) {
         for _ in 0..iterations {
+            if stops(self.iterations) {
+                break;
+            }
             let energy = self.aim(setting);
             self.pace = if energy > self.energy { 1 } else { self.pace + 1 };
             self.energy = energy;

@@ -55,6 +55,8 @@ knobs! {
     pub struct SmoothOptions in "smooth" {
         /// Most iterations.
         iterations: u32 = 200, in 0.0..=5000.0, "count";
+        /// Iterations that are done even if the run is to stop; 0 leaves all as it was then.
+        hurried: u32 = 15, in 0.0..=5000.0, "count";
         /// How much more a face weighs the worse its shape is.
         stress: f64 = 2.0, in 0.0..=100.0, "factor";
         /// Vertices are projected to the reference in every so many iterations.

@@ -3,7 +3,7 @@
 use super::RelaxOptions;
 use super::kernel::{Kernel, Setting, Vertex};
 use crate::mesh::{NONE, Point, PolyMesh, Vector};
-use crate::surface::Reference;
+use crate::surface::{Hit, Reference};
 
 /// How the faces of a mesh are oriented against those of its reference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -29,8 +29,17 @@ impl Orientation {
 /// Decides by vote of all faces, by area, how `mesh` is oriented. O(n log n), parallel.
 #[must_use]
 pub fn orientation(mesh: &PolyMesh, reference: &Reference) -> Orientation {
+    vote(mesh, reference, &at_centres(mesh, reference))
+}
+
+/// Where on the reference the centre of each face is. O(n log n), parallel.
+pub(super) fn at_centres(mesh: &PolyMesh, reference: &Reference) -> Vec<Hit> {
     let centres: Vec<Point> = (0..mesh.face_count()).map(|f| mesh.centre(f)).collect();
-    let hits = reference.closest_many(&centres);
+    reference.closest_many(&centres)
+}
+
+/// The orientation, when that is known.
+pub(super) fn vote(mesh: &PolyMesh, reference: &Reference, hits: &[Hit]) -> Orientation {
     let vote = |(f, t): (usize, u32)| mesh.area_vector(f).dot(reference.normal(t));
     let sum: f64 = hits.iter().map(|h| h.triangle).enumerate().map(vote).sum();
     if sum < 0.0 { Orientation::Against } else { Orientation::Along }
@@ -158,7 +167,7 @@ pub fn relax_local(
         kernel.find_normals(reference, &setting);
         region.prepared = true;
     }
-    kernel.run(reference, &setting, (iterations, 0.0));
+    kernel.run(reference, &setting, (iterations, 0.0), |_| false);
     kernel.land(reference, &setting);
     RelaxReport { iterations: kernel.iterations, energy: kernel.energy, motion: kernel.motion }
 }

@@ -10,7 +10,7 @@
 use fixedbitset::FixedBitSet;
 
 use super::reference::Reference;
-use super::tree::{Best, Tree};
+use super::tree::Tree;
 use crate::knobs::knobs;
 use crate::mesh::{DisjointSets, NONE, Point, PolyMesh, Topology, Vector};
 
@@ -148,8 +148,7 @@ impl SharpLines {
     /// Whether a line is at most `radius` away. O(log n) expected.
     #[must_use]
     pub fn is_within(&self, query: &Point, radius: f64) -> bool {
-        let search = |t: &Tree| t.search(query, Best::within(radius), |_| true).hit().is_some();
-        self.tree.as_ref().is_some_and(search)
+        self.tree.as_ref().is_some_and(|tree| tree.is_within(query, radius))
     }
 }
 

@@ -5,9 +5,12 @@ use thiserror::Error;
 
 use super::features::{Crease, border_edges, creases};
 use super::samples::{sample_places, sample_triangles};
-use super::tree::{Best, Tree};
+use super::tree::{Best, CLOSEST, Tree};
 use super::triangulation::{Triangulation, triangulate};
 use crate::mesh::{Point, PolyMesh, Topology, Vector};
+
+/// Queries that are answered one after the other.
+const CHUNK: usize = 256;
 
 /// Why a mesh is no reference surface.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -65,21 +68,24 @@ impl Reference {
         let place = |t: &[u32; 3]| t.map(|v| points[v as usize]);
         let tiny = mesh.diagonal() * f64::EPSILON;
         let solid: Vec<u32> = (0..triangles.len() as u32)
+            .into_par_iter()
             .filter(|&t| area_vector(&place(&triangles[t as usize])).norm() > tiny * tiny)
             .collect();
         if solid.is_empty() {
             return Err(SurfaceError::Empty { faces: mesh.face_count() });
         }
         let corners: Vec<[Point; 3]> =
-            solid.iter().map(|&t| place(&triangles[t as usize])).collect();
+            solid.par_iter().map(|&t| place(&triangles[t as usize])).collect();
         let (tree, order) = Tree::build(&corners);
         let kept = |k: &u32| solid[*k as usize] as usize;
-        let areas: Vec<Vector> = order.iter().map(|&k| area_vector(&corners[k as usize])).collect();
+        drop(corners);
+        let areas: Vec<Vector> =
+            (0..order.len() as u32).into_par_iter().map(|t| area_vector(tree.corners(t))).collect();
         Ok(Self {
             triangles: order.iter().map(|k| triangles[kept(k)]).collect(),
             face: order.iter().map(|k| face[kept(k)]).collect(),
-            normals: areas.iter().map(|a| a / a.norm()).collect(),
             area: areas.iter().map(Vector::norm).sum(),
+            normals: areas.into_par_iter().map(|a| a / a.norm()).collect(),
             diagonal: mesh.diagonal(),
             points,
             tree,
@@ -151,7 +157,7 @@ impl Reference {
     /// The same as [`Reference::closest`], faster if triangle `last` is near the answer.
     #[must_use]
     pub fn closest_near(&self, query: &Point, last: u32) -> Hit {
-        let best = self.tree.search(query, self.start(query, last), |_| true);
+        let best = self.tree.search(query, self.start(query, last), |_| true, CLOSEST);
         Hit { triangle: best.triangle, point: best.point, distance: best.squared.sqrt() }
     }
 
@@ -170,7 +176,7 @@ impl Reference {
             Best::within(reach)
         };
         self.tree
-            .search(query, start, faces)
+            .search(query, start, faces, CLOSEST)
             .hit()
             .unwrap_or_else(|| self.closest_near(query, last))
     }
@@ -178,7 +184,7 @@ impl Reference {
     /// Whether some point of the surface is at most `radius` away. O(log n) expected.
     #[must_use]
     pub fn is_within(&self, query: &Point, radius: f64) -> bool {
-        self.tree.search(query, Best::within(radius), |_| true).hit().is_some()
+        self.tree.is_within(query, radius)
     }
 
     /// Whether a point is at most `tolerance` away from triangle `t`; false if there is none such.
@@ -200,7 +206,27 @@ impl Reference {
             };
             queries.iter().map(find).collect::<Vec<_>>()
         };
-        queries.par_chunks(256).flat_map_iter(chunk).collect()
+        queries.par_chunks(CHUNK).flat_map_iter(chunk).collect()
+    }
+
+    /// Which of many queries are farther than `radius` from the surface, ascending: faster than
+    /// their closest points where few are; neighbours should be near each other. Parallel.
+    #[must_use]
+    pub fn farther_than(&self, queries: &[Point], radius: f64) -> Vec<u32> {
+        let chunk = |(k, queries): (usize, &[Point])| {
+            let (mut last, mut far) = (0, Vec::new());
+            for (query, i) in queries.iter().zip((k * CHUNK) as u32..) {
+                if self.is_on(query, last, radius) {
+                    continue;
+                }
+                match self.tree.near(query, radius) {
+                    Some(triangle) => last = triangle,
+                    None => far.push(i),
+                }
+            }
+            far
+        };
+        queries.par_chunks(CHUNK).enumerate().flat_map_iter(chunk).collect()
     }
 
     /// About evenly spread points of the surface, `count` of them, always the same.

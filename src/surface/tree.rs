@@ -15,9 +15,12 @@
 
 use super::Hit;
 use crate::mesh::Point;
+use rayon::prelude::*;
 
 /// Children of a node.
 const WIDTH: usize = 4;
+/// No distance is enough: the search is for the closest.
+pub(super) const CLOSEST: f64 = -1.0;
 /// Marks a child that is a triangle.
 const LEAF_BIT: u32 = 1 << 31;
 /// Every level has a fourth of the triangles of the one above and leaves at most all children
@@ -76,16 +79,16 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// Builds the tree over at least one triangle, in O(n log n); also returns the order in
+    /// Builds the tree over at least one triangle, in O(n log n), parallel; also returns the order in
     /// which it stores the triangles, which is spatially coherent.
     pub(super) fn build(triangles: &[[Point; 3]]) -> (Self, Vec<u32>) {
         let frame = Frame::new(triangles);
-        let boxes: Vec<Bounds> = triangles.iter().map(|t| frame.bounds(t)).collect();
+        let boxes: Vec<Bounds> = triangles.par_iter().map(|t| frame.bounds(t)).collect();
         let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
-        let mut builder = Builder { boxes: &boxes, nodes: Vec::with_capacity(boxes.len() / 2) };
-        builder.add_node(&mut order, 0);
-        let nodes = builder.nodes;
-        let triangles = order.iter().map(|&t| triangles[t as usize]).collect();
+        let mut nodes = vec![Node::EMPTY; node_count(order.len())];
+        let whole = Part { nodes: &mut nodes, number: 0, order: &mut order, start: 0 };
+        Builder { boxes: &boxes }.build(whole);
+        let triangles = order.par_iter().map(|&t| triangles[t as usize]).collect();
         (Self { nodes, triangles, frame }, order)
     }
 
@@ -100,13 +103,15 @@ impl Tree {
         ((on - query).norm_squared(), on)
     }
 
-    /// The best of `best` and all triangles that `accept` takes; O(log n) expected.
+    /// The best of `best` and all triangles that `accept` takes, or the first one found that is at
+    /// most √`enough` away; O(log n) expected.
     // In one piece: with the stack in functions of its own it takes a fifth more instructions.
     pub(super) fn search(
         &self,
         query: &Point,
         mut best: Best,
         accept: impl Fn(u32) -> bool,
+        enough: f64,
     ) -> Best {
         let place = self.frame.place(query);
         let mut bound = self.frame.bound(best.squared);
@@ -123,6 +128,9 @@ impl Tree {
                 let (squared, point) = self.at(t, query);
                 if (squared, t) < (best.squared, best.triangle) && accept(t) {
                     best = Best { squared, triangle: t, point };
+                    if squared <= enough {
+                        return best;
+                    }
                     bound = self.frame.bound(squared);
                 }
                 continue;
@@ -143,6 +151,19 @@ impl Tree {
             }
         }
         best
+    }
+}
+
+impl Tree {
+    /// Whether some triangle is at most `radius` away. O(log n) expected.
+    pub(super) fn is_within(&self, query: &Point, radius: f64) -> bool {
+        self.near(query, radius).is_some()
+    }
+
+    /// Some triangle that is at most `radius` away. O(log n) expected.
+    pub(super) fn near(&self, query: &Point, radius: f64) -> Option<u32> {
+        let best = self.search(query, Best::within(radius), |_| true, radius * radius);
+        best.hit().map(|hit| hit.triangle)
     }
 }
 
@@ -231,43 +252,107 @@ impl Bounds {
     }
 }
 
+/// Triangles below which a part of the tree is built by one thread.
+const TOGETHER: usize = 8192;
+
+/// Does both, at the same time if they are long.
+fn both<A: Send, B: Send>(
+    long: bool,
+    a: impl FnOnce() -> A + Send,
+    b: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    if long { rayon::join(a, b) } else { (a(), b()) }
+}
+
+/// How many of `count` triangles are in the first half of a split.
+fn first_half(count: usize) -> usize {
+    if count <= 1 {
+        return count;
+    }
+    // Fours make full nodes at the bottom.
+    let middle = count.div_ceil(2);
+    if middle > WIDTH { middle.next_multiple_of(WIDTH).min(count) } else { middle }
+}
+
+/// How many nodes there are over `count` triangles, two or more.
+fn node_count(count: usize) -> usize {
+    let left = first_half(count);
+    let quarters = [left, count - left].map(|half| {
+        let first = first_half(half);
+        [first, half - first]
+    });
+    1 + quarters.as_flattened().iter().filter(|&&n| n > 1).map(|&n| node_count(n)).sum::<usize>()
+}
+
 struct Builder<'a> {
     boxes: &'a [Bounds],
-    nodes: Vec<Node>,
+}
+
+/// A part of the tree that is to be built.
+struct Part<'a> {
+    /// Its nodes.
+    nodes: &'a mut [Node],
+    /// Number of the first one.
+    number: usize,
+    /// Its triangles.
+    order: &'a mut [u32],
+    /// Place of the first one in the whole order.
+    start: usize,
 }
 
 impl Builder<'_> {
-    /// Adds the node over `order`, whose first element is number `start` of the whole order.
-    fn add_node(&mut self, order: &mut [u32], start: usize) -> (u32, Bounds) {
-        let at = self.nodes.len();
-        self.nodes.push(Node::EMPTY);
+    /// Fills the nodes of a part and puts its triangles in order; its bounds.
+    fn build(&self, part: Part) -> Bounds {
+        let Part { nodes, number, order, start } = part;
+        let many = order.len() > TOGETHER;
         let (left, right) = self.halve(order);
-        let halves = [self.halve(left), self.halve(right)];
-        let (mut first, mut whole) = (start, Bounds::NONE);
-        for (side, part) in halves.into_iter().flat_map(<[_; 2]>::from).enumerate() {
-            let (child, bounds) = match *part {
-                [] => continue,
-                [t] => (LEAF_BIT | first as u32, self.boxes[t as usize]),
-                _ => self.add_node(part, first),
-            };
-            self.nodes[at].set(side, &bounds, child);
-            first += part.len();
+        let ((a, b), (c, d)) = both(many, || self.halve(left), || self.halve(right));
+        let Some((node, mut nodes)) = nodes.split_first_mut() else { return Bounds::NONE };
+        *node = Node::EMPTY;
+        let (mut number, mut start) = (number + 1, start);
+        let mut codes = [0; WIDTH];
+        let parts = [a, b, c, d].map(|order| {
+            let count = if order.len() > 1 { node_count(order.len()) } else { 0 };
+            let (own, rest) = std::mem::take(&mut nodes).split_at_mut(count);
+            nodes = rest;
+            let part = Part { nodes: own, number, order, start };
+            (number, start) = (number + count, start + part.order.len());
+            part
+        });
+        for (code, part) in codes.iter_mut().zip(&parts) {
+            let leaf = LEAF_BIT | part.start as u32;
+            *code = if part.order.len() == 1 { leaf } else { part.number as u32 };
+        }
+        let sizes = [0, 1, 2, 3].map(|k| parts[k].order.len());
+        let [a, b, c, d] = parts;
+        let ((a, b), (c, d)) = both(
+            many,
+            || both(many, || self.bounds(a), || self.bounds(b)),
+            || both(many, || self.bounds(c), || self.bounds(d)),
+        );
+        let mut whole = Bounds::NONE;
+        for (side, bounds) in [a, b, c, d].into_iter().enumerate().filter(|&(k, _)| sizes[k] > 0) {
+            node.set(side, &bounds, codes[side]);
             whole = whole.with(&bounds);
         }
-        (at as u32, whole)
+        whole
+    }
+
+    /// The bounds of a part, which is built if it is more than a triangle.
+    fn bounds(&self, part: Part) -> Bounds {
+        match *part.order {
+            [] => Bounds::NONE,
+            [t] => self.boxes[t as usize],
+            _ => self.build(part),
+        }
     }
 
     /// Splits triangles in the middle of the axis along which they are spread most.
     fn halve<'o>(&self, order: &'o mut [u32]) -> (&'o mut [u32], &'o mut [u32]) {
-        if order.len() <= 1 {
-            return order.split_at_mut(order.len());
-        }
-        let axis = self.widest_axis(order);
-        let key = |t: u32| self.boxes[t as usize].doubled_centre()[axis];
-        // Fours make full nodes at the bottom.
-        let middle = order.len().div_ceil(2);
-        let middle = if middle > WIDTH { middle.next_multiple_of(WIDTH) } else { middle };
+        let middle = first_half(order.len());
         if middle < order.len() {
+            let axis = self.widest_axis(order);
+            let key = |t: u32| self.boxes[t as usize].doubled_centre()[axis];
             let by_place = |&a: &u32, &b: &u32| key(a).total_cmp(&key(b)).then(a.cmp(&b));
             order.select_nth_unstable_by(middle, by_place);
         }

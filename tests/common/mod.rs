@@ -5,6 +5,7 @@
 
 pub(crate) mod browser;
 pub(crate) mod lifted;
+pub(crate) mod messy;
 
 use std::path::{Path, PathBuf};
 
