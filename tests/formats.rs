@@ -443,3 +443,33 @@ fn names_and_registry_agree() {
     let error = io::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md").as_path());
     assert!(error.unwrap_err().to_string().contains(".obj, .ply, .off, .stl, each also with .gz"));
 }
+
+// Streams.
+
+/// Runs `quadmend convert - --to dual` on these bytes, and gives standard output.
+fn through_pipes(name: &str, bytes: &[u8]) -> Vec<u8> {
+    let folder = tempfile::tempdir().unwrap();
+    let input = folder.path().join("in");
+    fs::write(&input, bytes).unwrap();
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_quadmend"))
+        .args(["convert", "-", "--to", "dual", "-o", "-", "--format", name])
+        .stdin(fs::File::open(input).unwrap())
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    output.stdout
+}
+
+#[test]
+fn standard_input_is_recognised_and_standard_output_is_what_was_asked_for() {
+    let mesh = shapes::torus(9, 7);
+    let dual = load(OBJ, through_pipes("obj", &OBJ.bytes(&mesh, None))).mesh;
+    for format in WRITTEN {
+        for bytes in [format.bytes(&mesh, None), gzip(&format.bytes(&mesh, None))] {
+            let written = through_pipes(format.name, &bytes);
+            assert_same(&load(format, written).mesh, &dual);
+        }
+    }
+    let triangles = through_pipes("off", STL_TEXT.as_bytes());
+    assert!(triangles.starts_with(b"COFF"));
+}
