@@ -204,7 +204,9 @@ fn files_without_faces_are_refused() {
 
 #[test]
 fn binary_junk_is_refused() {
-    assert!(matches!(fault(b"\x7fELF\x01\0\0").fault, ReadFault::Binary { offset: 5 }));
+    let error = fault(b"\x7fELF\x01\0\0");
+    assert!(matches!(error.fault, ReadFault::Binary { offset: 5 }));
+    assert_names(&error, 1, &["byte 5"]);
     let error = fault(b"\x1f\x8c\x08\x08\x9d");
     assert!(matches!(error.fault, ReadFault::Syntax { .. }));
     assert!(!error.to_string().contains('\x1f'), "{error:?}");

@@ -41,7 +41,10 @@ impl<'a> Lines<'a> {
             if byte == Some(0) {
                 return Err(ReadFault::Binary { offset: self.offset + taken as u64 });
             }
-            any |= !chunk.is_empty();
+            if !any && !chunk.is_empty() {
+                any = true;
+                self.number += 1;
+            }
             let ended = chunk.is_empty() || stop.is_some();
             self.text.extend_from_slice(&chunk[..taken]);
             self.consume(taken + usize::from(stop.is_some()));
@@ -53,7 +56,6 @@ impl<'a> Lines<'a> {
                 break;
             }
         }
-        self.number += usize::from(any);
         Ok(any)
     }
 
@@ -82,9 +84,9 @@ impl<'a> Lines<'a> {
         words(&self.text)
     }
 
-    /// Its number, from 1; 0 before the first.
+    /// Its number, from 1.
     pub(super) fn number(&self) -> usize {
-        self.number
+        self.number.max(1)
     }
 
     /// Whether it has an end, and is not where the file stops.
