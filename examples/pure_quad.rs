@@ -3,7 +3,7 @@
 //! `cargo run --release --example pure_quad`
 
 use quadmend::config::Config;
-use quadmend::io::{Format, Obj};
+use quadmend::io::{OBJ, ReadOptions};
 use quadmend::mesh::MendPolicy;
 use quadmend::pipeline::pure_quad::pure_quad;
 use quadmend::watch::Silent;
@@ -11,8 +11,9 @@ use std::error::Error;
 
 /// Runs the example.
 pub(crate) fn main() -> Result<(), Box<dyn Error>> {
-    let mesh = Obj.read(include_bytes!("../assets/bracket.obj"), "bracket.obj")?.mesh;
-    let scan = Obj.read(include_bytes!("../assets/bracket.ref.obj"), "bracket.ref.obj")?.mesh;
+    let read = |bytes, name| OBJ.read(bytes, name, &ReadOptions::default());
+    let mesh = read(&include_bytes!("../assets/bracket.obj")[..], "bracket.obj")?.mesh;
+    let scan = read(&include_bytes!("../assets/bracket.ref.obj")[..], "bracket.ref.obj")?.mesh;
     let converted = pure_quad(mesh, Some(&scan), MendPolicy::Mend, &Config::default(), &Silent)?;
 
     // Every face is a quad, but for one in each part with an odd number of frozen edges around it.

@@ -3,7 +3,7 @@
 //! `cargo run --release --example session`
 
 use quadmend::config::Config;
-use quadmend::io::{Format, Obj};
+use quadmend::io::{OBJ, ReadOptions};
 use quadmend::mesh::MendPolicy;
 use quadmend::script::{Script, edit};
 use quadmend::watch::Silent;
@@ -29,8 +29,9 @@ iterations = 40
 
 /// Runs the example.
 pub(crate) fn main() -> Result<(), Box<dyn Error>> {
-    let mesh = Obj.read(include_bytes!("../assets/bracket.obj"), "bracket.obj")?.mesh;
-    let scan = Obj.read(include_bytes!("../assets/bracket.ref.obj"), "bracket.ref.obj")?.mesh;
+    let read = |bytes, name| OBJ.read(bytes, name, &ReadOptions::default());
+    let mesh = read(&include_bytes!("../assets/bracket.obj")[..], "bracket.obj")?.mesh;
+    let scan = read(&include_bytes!("../assets/bracket.ref.obj")[..], "bracket.ref.obj")?.mesh;
     let script = Script::parse(SESSION, "session.toml")?;
     // Goes on over what is refused; each refusal names its step, the element and the reason.
     let options = (&Config::default(), true);

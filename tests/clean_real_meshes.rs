@@ -7,7 +7,7 @@ mod common;
 
 use common::{MESHES, Segment, data_folder, say, segments, shape};
 use quadmend::config::Config;
-use quadmend::io::{self, Format, Obj};
+use quadmend::io::{self, OBJ};
 use quadmend::mesh::{MendPolicy, PolyMesh, Topology, mend};
 use quadmend::metrics::{Metrics, Summary};
 use quadmend::pipeline::{self, Cleaned};
@@ -217,9 +217,7 @@ fn real_meshes_become_clean_and_keep_their_shape() {
 }
 
 fn bytes(mesh: &PolyMesh) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    Obj.write(mesh, &mut bytes).expect("memory can be written to");
-    bytes
+    OBJ.bytes(mesh, None)
 }
 
 #[test]

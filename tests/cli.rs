@@ -225,9 +225,11 @@ fn an_input_is_overwritten_only_by_force() {
 fn outputs_that_have_nowhere_to_go_are_refused_before_the_work() {
     let bench = Bench::new();
     bench.write("in.obj", &grid(4));
-    for (output, told) in
-        [("nowhere/out.obj", "does not exist"), ("out.ply", ".obj"), (".", "is a folder")]
-    {
+    for (output, told) in [
+        ("nowhere/out.obj", "does not exist"),
+        ("out.xyz", ".obj, .ply, .off"),
+        (".", "is a folder"),
+    ] {
         bench.run(["clean", "in.obj", "-o", output]).fails(2, &[output, told]);
     }
     let report = ["clean", "in.obj", "-o", "out.obj", "--json", "nowhere/r.json"];

@@ -329,6 +329,60 @@ fn damaged_grid() -> impl Strategy<Value = PolyMesh> {
     })
 }
 
+/// Two unit squares side by side, the right one divided in two or more, its vertices on the common
+/// edge off by `off`.
+fn cracked(parts: u32, off: f64) -> PolyMesh {
+    let mut points = vec![
+        Point::new(0.0, 0.0, 0.0),
+        Point::new(1.0, 0.0, 0.0),
+        Point::new(1.0, 1.0, 0.0),
+        Point::new(0.0, 1.0, 0.0),
+    ];
+    let mut faces = vec![vec![0, 1, 2, 3]];
+    let mut left = 1;
+    points.push(Point::new(2.0, 0.0, 0.0));
+    let mut right = 4;
+    for part in 1..=parts {
+        let y = f64::from(part) / f64::from(parts);
+        let (below_left, below_right) = (left, right);
+        left = if part == parts { 2 } else { points.len() as u32 };
+        if part < parts {
+            points.push(Point::new(1.0 + off, y, 0.0));
+        }
+        right = points.len() as u32;
+        points.push(Point::new(2.0, y, 0.0));
+        faces.push(vec![below_left, below_right, right, left]);
+    }
+    PolyMesh::new(points, faces).unwrap()
+}
+
+#[test]
+fn cracks_are_welded_within_the_tolerance_only() {
+    for (parts, off) in [(2, 0.0), (2, 0.04), (4, -0.04), (7, 0.0)] {
+        let (output, report) = mended(&cracked(parts, off));
+        assert_eq!(report.count(MendKind::Crack), parts as usize - 1);
+        assert_eq!(output.face(0).len(), 4 + parts as usize - 1);
+        assert_eq!(census(&output)[0].loops, 1, "{parts} {off}");
+    }
+    for off in [0.06, -0.2] {
+        let (_, report) = mended(&cracked(2, off));
+        assert_eq!(report.count(MendKind::Crack), 0, "{off}: a hole, not a crack");
+    }
+}
+
+#[test]
+fn a_crack_that_lies_on_two_faces_stays() {
+    // The large square twice, on either side of the chain: its edges would have three faces.
+    let input = cracked(2, 0.0);
+    let mut points = input.points().to_vec();
+    let n = points.len() as u32;
+    points.extend([Point::new(0.0, 0.0, 1.0), Point::new(0.0, 1.0, 1.0)]);
+    let mut faces: Vec<Vec<u32>> = input.faces().map(<[u32]>::to_vec).collect();
+    faces.push(vec![n, 1, 2, n + 1]);
+    let (_, report) = mended(&PolyMesh::new(points, faces).unwrap());
+    assert_eq!(report.count(MendKind::Crack), 0);
+}
+
 /// Mends; what comes out is clean and mending it again changes nothing.
 fn assert_settles(input: PolyMesh) -> Result<(), TestCaseError> {
     match mend(input, MendPolicy::Mend) {

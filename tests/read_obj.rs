@@ -4,13 +4,13 @@
 use std::path::Path;
 
 use proptest::prelude::*;
-use quadmend::io::{self, Format, Loaded, Obj, ReadError, ReadFault};
+use quadmend::io::{self, Loaded, OBJ, ReadError, ReadFault, ReadOptions};
 use quadmend::mesh::{Point, PolyMesh};
 
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 fn load(text: &str) -> Loaded {
-    Obj.read(text.as_bytes(), "in.obj").unwrap_or_else(|e| panic!("{e}"))
+    OBJ.read(text.as_bytes(), "in.obj", &ReadOptions::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn faces(text: &str) -> Vec<Vec<u32>> {
@@ -18,7 +18,7 @@ fn faces(text: &str) -> Vec<Vec<u32>> {
 }
 
 fn fault(bytes: impl AsRef<[u8]>) -> ReadError {
-    match Obj.read(bytes.as_ref(), "in.obj") {
+    match OBJ.read(bytes.as_ref(), "in.obj", &ReadOptions::default()) {
         Ok(loaded) => panic!("was read: {loaded:?}"),
         Err(error) => error,
     }
@@ -146,7 +146,7 @@ fn line_ends_marks_and_blanks_of_all_systems_are_accepted() {
 fn comments_may_be_in_any_encoding() {
     let mut bytes = b"# caf\xe9 C:\\\n".to_vec();
     bytes.extend_from_slice(square_and("f 1 2 3 4\n").as_bytes());
-    assert!(Obj.read(&bytes, "in.obj").is_ok());
+    assert!(OBJ.read(&bytes[..], "in.obj", &ReadOptions::default()).is_ok());
 }
 
 // Bad input, and what it is told.
@@ -204,10 +204,12 @@ fn files_without_faces_are_refused() {
 
 #[test]
 fn binary_junk_is_refused() {
-    assert!(matches!(fault(b"\x7fELF\x01\0\0").fault, ReadFault::Binary { offset: 5 }));
-    assert!(matches!(fault(b"\x1f\x8b\x08\x08").fault, ReadFault::Syntax { .. }));
-    let message = fault(b"\x1f\x8b\x08\x08\x9d").to_string();
-    assert!(!message.contains('\x1f'), "{message:?}");
+    let error = fault(b"\x7fELF\x01\0\0");
+    assert!(matches!(error.fault, ReadFault::Binary { offset: 5 }));
+    assert_names(&error, 1, &["byte 5"]);
+    let error = fault(b"\x1f\x8c\x08\x08\x9d");
+    assert!(matches!(error.fault, ReadFault::Syntax { .. }));
+    assert!(!error.to_string().contains('\x1f'), "{error:?}");
 }
 
 #[test]
@@ -277,9 +279,7 @@ fn upper_case_extensions_are_known() {
 // Writing.
 
 fn written(mesh: &PolyMesh) -> String {
-    let mut bytes = Vec::new();
-    Obj.write(mesh, &mut bytes).unwrap();
-    String::from_utf8(bytes).unwrap()
+    String::from_utf8(OBJ.bytes(mesh, None)).unwrap()
 }
 
 #[test]
@@ -356,11 +356,11 @@ proptest! {
     fn no_bytes_make_the_reader_panic(
         lines in prop::collection::vec("(v|f|g|o|l|vt|#|)[ -9/\\\\.e#\t]{0,20}(\n|\r\n|\\\\\n|)", 0..30)
     ) {
-        let _ = Obj.read(lines.concat().as_bytes(), "in.obj");
+        let _ = OBJ.read(lines.concat().as_bytes(), "in.obj", &ReadOptions::default());
     }
 
     #[test]
     fn no_junk_makes_the_reader_panic(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-        let _ = Obj.read(&bytes, "in.obj");
+        let _ = OBJ.read(&bytes[..], "in.obj", &ReadOptions::default());
     }
 }

@@ -3,7 +3,7 @@
 mod common;
 
 use common::lifted::{Dice, lifted, mess_up};
-use quadmend::io::{Format, Obj};
+use quadmend::io::{OBJ, ReadOptions};
 use quadmend::mesh::{PolyMesh, check, shapes};
 use quadmend::sqrtcc::lower;
 use quadmend::views::{Label, ViewError, catmull_clark, dual, primal, sqrt_cc};
@@ -103,11 +103,10 @@ fn catmull_clark_has_a_quad_for_each_corner() {
 fn colours_are_written_and_the_mesh_reads_back() {
     let view = sqrt_cc(&shapes::grid(3, 2)).unwrap();
     let colours: Vec<[f64; 3]> = view.labels.iter().map(|l| l.colour()).collect();
-    let mut text = Vec::new();
-    Obj.write_coloured(&view.mesh, &colours, &mut text).unwrap();
+    let text = OBJ.bytes(&view.mesh, Some(&colours));
     let first = String::from_utf8(text.clone()).unwrap();
     assert_eq!(first.lines().next(), Some("v 0 0 0 0.85 0.15 0.1"));
-    let back = Obj.read(&text, "view").unwrap().mesh;
+    let back = OBJ.read(&text[..], "view", &ReadOptions::default()).unwrap().mesh;
     assert_eq!((back.points(), faces(&back)), (view.mesh.points(), faces(&view.mesh)));
     let outside = view.labels.iter().filter(|&&l| l == Label::Outside).count();
     let name = |f: usize| &*back.group_names()[back.groups()[f] as usize];

@@ -13,7 +13,7 @@ use clap::Args;
 use quadmend::batch::manifest::{Source, numbers};
 use quadmend::batch::{self, Entry, Manifest, Memory, Row, Status, estimate};
 use quadmend::config::Config;
-use quadmend::io::{self, FORMATS, Loaded, write_atomically};
+use quadmend::io::{self, FORMATS, Format, Loaded, write_atomically};
 use quadmend::mesh::MendPolicy;
 use quadmend::pipeline::{Cleaned, clean};
 use quadmend::watch::Watch;
@@ -166,9 +166,11 @@ impl Batch {
 
     fn reference_of(&self, name: &str) -> Result<Option<PathBuf>, String> {
         let Some(folder) = &self.reference_dir else { return Ok(None) };
-        let extensions = || FORMATS.iter().flat_map(|format| format.extensions());
+        let extensions = || FORMATS.iter().flat_map(|format| format.extensions);
         let mut names = [".ref", ""].into_iter().flat_map(|middle| {
-            extensions().map(move |extension| format!("{name}{middle}.{extension}"))
+            let ends = extensions()
+                .flat_map(|extension| [extension.to_string(), format!("{extension}.gz")]);
+            ends.map(move |end| format!("{name}{middle}.{end}"))
         });
         let found = names.find_map(|name| Some(folder.join(name)).filter(|path| path.is_file()));
         let missing = || format!("no surface {name}.ref.obj or {name}.obj in {}", folder.display());
@@ -329,7 +331,8 @@ impl Work<'_> {
     fn clean(&self, job: &Job, reference: Option<&Path>) -> Result<(Cleaned, Status), Trouble> {
         let refused = |error: String| (Status::Refused, error);
         job.reference.as_ref().map_err(|error| refused(error.clone()))?;
-        let read = |path: &Path| io::read(path).map_err(|e| refused(e.to_string()));
+        let limits = &self.config.read;
+        let read = |path: &Path| io::read_within(path, limits).map_err(|e| refused(e.to_string()));
         let (input, reference) = (read(&job.input)?, reference.map(read).transpose()?);
         let surface = reference.as_ref().map(|loaded| &loaded.mesh);
         let faces = surface.unwrap_or(&input.mesh).face_count();
@@ -422,17 +425,15 @@ fn expand(pattern: &str) -> Result<Vec<PathBuf>, Failure> {
     let wanted = if path.is_dir() { format!("{pattern}/*") } else { pattern.to_owned() };
     let found = glob::glob(&wanted)
         .map_err(|e| Failure::usage(format!("{pattern}: not a pattern for files: {e}")))?;
-    let known = |path: &PathBuf| {
-        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-        let extensions = || FORMATS.iter().flat_map(|format| format.extensions());
-        extension.is_some_and(|extension| extensions().any(|known| *known == extension))
-    };
+    let is_mesh = |path: &PathBuf| path.is_file() && Format::of(path).is_some();
     // What cannot be read is told when it is cleaned; folders that cannot be listed have no meshes.
-    Ok(found.filter_map(Result::ok).filter(|path| path.is_file() && known(path)).collect())
+    Ok(found.filter_map(Result::ok).filter(is_mesh).collect())
 }
 
-/// The name of a file without its folder and last extension.
+/// The name of a file without its folder and the extensions of its format.
 fn stem(path: &Path) -> String {
+    let unpacked = path.with_extension("");
+    let path = if path.extension().is_some_and(|e| e == "gz") { &unpacked } else { path };
     path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
 }
 

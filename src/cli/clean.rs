@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use quadmend::io;
 use quadmend::pipeline::{Report, clean};
 use quadmend::report::Timing;
 use quadmend::watch::{Phase, Watch};
@@ -13,6 +12,7 @@ use super::aftermath::Aftermath;
 use super::failure::Failure;
 use super::limits::{self, Limit};
 use super::look::Look;
+use super::output::MeshFormat;
 use super::paths::{self, is_stream};
 use super::source::{Begun, Source};
 use super::stop::Patience;
@@ -37,7 +37,7 @@ goes to standard output, or to standard error if standard output takes the mesh 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Clean {
-    /// Where the cleaned mesh goes (OBJ, - for standard output); an older file is replaced when
+    /// Where the cleaned mesh goes (- for standard output); an older file is replaced when
     /// the new one is complete, but never an input unless --force is given
     #[arg(short, long, value_name = "MESH")]
     output: PathBuf,
@@ -71,6 +71,9 @@ pub(super) struct Clean {
 
     // Before what has a heading of its own: a heading holds for all that follows.
     #[command(flatten)]
+    format: MeshFormat,
+
+    #[command(flatten)]
     source: Source,
 
     #[command(flatten)]
@@ -83,12 +86,13 @@ pub(super) struct Clean {
 impl Clean {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
         self.check_paths()?;
+        let destination = self.format.to(&self.output)?;
         let begun = self.source.begin(self.patience.begin()?)?;
         let Begun { progress, config, input, policy, .. } = &begun;
         let cleaned = clean(input.mesh.clone(), begun.surface(), *policy, config, progress)
             .map_err(|e| self.source.failure(e))?;
         progress.progress(Phase::Write, 0, 1, None);
-        io::write(&self.output, &cleaned.mesh)?;
+        destination.write(&cleaned.mesh)?;
         if let Some(path) = &self.json {
             output::file(path, &output::json(&cleaned.report)?)?;
         }

@@ -30,10 +30,10 @@ whether that is better.";
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Compare {
-    /// The mesh before (OBJ, - for standard input)
+    /// The mesh before (OBJ, PLY or OFF, - for standard input)
     before: PathBuf,
 
-    /// The mesh after, and more if wanted (OBJ, - for standard input)
+    /// The mesh after, and more if wanted (OBJ, PLY or OFF, - for standard input)
     #[arg(required = true)]
     after: Vec<PathBuf>,
 

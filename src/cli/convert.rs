@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use quadmend::io;
+use quadmend::io::Destination;
 use quadmend::mesh::{MeshError, PolyMesh, mend};
 use quadmend::metrics::table;
 use quadmend::pipeline::pure_quad::{Report, pure_quad};
@@ -11,6 +11,7 @@ use quadmend::views::{Label, View, catmull_clark, dual, primal, sqrt_cc};
 use quadmend::watch::{Phase, Watch};
 
 use super::failure::Failure;
+use super::output::MeshFormat;
 use super::paths::is_stream;
 use super::source::{Begun, Source};
 use super::stop::Patience;
@@ -38,7 +39,7 @@ pub(super) struct Convert {
     #[arg(long, value_name = "KIND")]
     to: Kind,
 
-    /// Where the result goes (OBJ, - for standard output); never an input unless --force is given
+    /// Where the result goes (- for standard output); never an input unless --force is given
     #[arg(short, long, value_name = "MESH")]
     output: PathBuf,
 
@@ -49,6 +50,9 @@ pub(super) struct Convert {
     /// For pure-quad: write the report as JSON (- for standard output) [default: none]
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+
+    #[command(flatten)]
+    format: MeshFormat,
 
     #[command(flatten)]
     source: Source,
@@ -82,10 +86,11 @@ enum First {
 impl Convert {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
         self.check_arguments()?;
+        let destination = self.format.to(&self.output)?;
         let begun = self.source.begin(self.patience.begin()?)?;
         match self.to {
-            Kind::PureQuad => self.pure_quad(begun),
-            kind => self.view(begun, kind),
+            Kind::PureQuad => self.pure_quad(begun, destination),
+            kind => self.view(begun, kind, destination),
         }
     }
 
@@ -100,12 +105,12 @@ impl Convert {
         self.source.check_paths(None, Some(&self.output), json.as_slice())
     }
 
-    fn pure_quad(&self, begun: Begun) -> Result<Exit, Failure> {
+    fn pure_quad(&self, begun: Begun, destination: Destination) -> Result<Exit, Failure> {
         let (mesh, surface) = (begun.input.mesh.clone(), begun.surface());
         let converted = pure_quad(mesh, surface, begun.policy, &begun.config, &begun.progress)
             .map_err(|e| self.source.failure(e))?;
         begun.progress.progress(Phase::Write, 0, 1, None);
-        io::write(&self.output, &converted.mesh)?;
+        destination.write(&converted.mesh)?;
         if let Some(path) = &self.json {
             output::file(path, &output::json(&converted.report)?)?;
         }
@@ -136,12 +141,12 @@ impl Convert {
         output::table(&table, taken)
     }
 
-    fn view(&self, begun: Begun, kind: Kind) -> Result<Exit, Failure> {
+    fn view(&self, begun: Begun, kind: Kind, destination: Destination) -> Result<Exit, Failure> {
         let mesh = begun.input.mesh;
         if kind == Kind::Primal {
             let first = if self.first == Some(First::D) { Label::Face } else { Label::Vertex };
             let mesh = primal(&mesh, first).map_err(|e| self.source.failure(e))?;
-            io::write(&self.output, &mesh)?;
+            destination.write(&mesh)?;
             return Ok(Exit::Done);
         }
         let (mesh, mends) = mend(mesh, begun.policy).map_err(|e| self.source.failure(e))?;
@@ -150,7 +155,7 @@ impl Convert {
         }
         let View { mesh, labels } = domain(kind)(&mesh).map_err(|e| self.source.failure(e))?;
         let colours: Vec<[f64; 3]> = labels.into_iter().map(Label::colour).collect();
-        io::write_coloured(&self.output, &mesh, &colours)?;
+        destination.write_coloured(&mesh, &colours)?;
         Ok(Exit::Done)
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use quadmend::config::Config;
-use quadmend::io::{Format, Loaded, Obj, write};
+use quadmend::io::{Loaded, OBJ, ReadOptions, write};
 use quadmend::mesh::{MendPolicy, PolyMesh};
 use quadmend::pipeline::{Cleaned, clean};
 
@@ -95,5 +95,5 @@ impl Demo {
 }
 
 fn embedded(bytes: &[u8]) -> Result<Loaded, Failure> {
-    Ok(Obj.read(bytes, "embedded sample")?)
+    Ok(OBJ.read(bytes, "embedded sample", &ReadOptions::default())?)
 }

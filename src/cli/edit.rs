@@ -4,12 +4,12 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use quadmend::io;
 use quadmend::script::{Edited, OPERATIONS, Script, StepError, StepRecord, edit};
 use quadmend::watch::{Phase, Watch};
 use serde::Serialize;
 
 use super::failure::Failure;
+use super::output::MeshFormat;
 use super::source::Source;
 use super::stop::Stop;
 use super::{Exit, output};
@@ -50,7 +50,7 @@ pub(super) struct Edit {
     #[arg(short, long, value_name = "FILE")]
     script: PathBuf,
 
-    /// Where the edited mesh goes (OBJ, - for standard output); an older file is replaced when the
+    /// Where the edited mesh goes (- for standard output); an older file is replaced when the
     /// new one is complete, but never an input unless --force is given
     #[arg(short, long, value_name = "MESH", required_unless_present = "dry_run")]
     output: Option<PathBuf>,
@@ -61,6 +61,9 @@ pub(super) struct Edit {
     /// Write a log as JSON, with the operations of every step (- for standard output)
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+
+    #[command(flatten)]
+    format: MeshFormat,
 
     #[command(flatten)]
     source: Source,
@@ -88,14 +91,15 @@ struct Log<'a> {
 impl Edit {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
         self.check_paths()?;
+        let output = self.output.as_deref().map(|path| self.format.to(path)).transpose()?;
         let script = self.read_script()?;
         let begun = self.source.begin(Stop::default())?;
         let options = (&begun.config, self.caution.keep_going);
         let (mesh, surface) = (begun.input.mesh.clone(), begun.surface());
         let edited = edit(mesh, surface, begun.policy, &script, options, &begun.progress)?;
-        if let Some(path) = self.output.as_ref().filter(|_| !self.caution.dry_run) {
+        if let Some(destination) = output.filter(|_| !self.caution.dry_run) {
             begun.progress.progress(Phase::Write, 0, 1, None);
-            io::write(path, &edited.mesh)?;
+            destination.write(&edited.mesh)?;
         }
         begun.progress.finish();
         self.tell(&edited)?;

@@ -16,8 +16,8 @@ use super::stop::Stop;
 /// Against what and how to measure.
 #[derive(Debug, Args)]
 pub(super) struct Measuring {
-    /// Surface to measure distances to, usually the scan that was remeshed (OBJ, - for standard
-    /// input) [default: no distances]
+    /// Surface to measure distances to, usually the scan that was remeshed (OBJ, PLY, OFF or STL, -
+    /// for standard input) [default: no distances]
     #[arg(short, long, value_name = "MESH")]
     pub(super) reference: Option<PathBuf>,
 
@@ -55,12 +55,13 @@ impl Measuring {
         paths::read_stdin_once(&inputs)?;
         let config = self.settings.load()?;
         let progress = self.running.start(Stop::default())?;
-        let reference = self.reference.as_deref().map(|path| progress.load(path)).transpose()?;
+        let reference =
+            self.reference.as_deref().map(|path| progress.load(path, &config.read)).transpose()?;
         let target = self.target(reference.as_ref(), &config)?;
         let mut meshes = Vec::new();
         for (i, path) in files.iter().map(AsRef::as_ref).enumerate() {
             progress.progress(Phase::Measure, i, files.len(), None);
-            let loaded = progress.load(path)?;
+            let loaded = progress.load(path, &config.read)?;
             let metrics = measure(&loaded.mesh, target.as_ref());
             let metrics = metrics.map_err(|e| Failure::of_file(&paths::shown(path), e))?;
             meshes.push(Measured { loaded, metrics });

@@ -25,7 +25,7 @@ relative to its diagonal.";
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct MetricsCommand {
-    /// The mesh to measure (OBJ, - for standard input)
+    /// The mesh to measure (OBJ, PLY or OFF, - for standard input)
     mesh: PathBuf,
 
     /// Exit with code 4 if a metric is beyond a limit, for example `irregular_elements>100` or

@@ -4,12 +4,12 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use quadmend::io;
 use quadmend::optimize;
 use quadmend::pipeline::optimize::{Report, State, optimize};
 use quadmend::watch::{Phase, Watch};
 
 use super::failure::Failure;
+use super::output::MeshFormat;
 use super::paths::is_stream;
 use super::source::Source;
 use super::stop::Patience;
@@ -34,13 +34,16 @@ pub(super) struct Optimize {
     #[arg(long)]
     goal: Goal,
 
-    /// Where the result goes (OBJ, - for standard output); never an input unless --force is given
+    /// Where the result goes (- for standard output); never an input unless --force is given
     #[arg(short, long, value_name = "MESH")]
     output: PathBuf,
 
     /// Write the report as JSON (- for standard output) [default: none]
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+
+    #[command(flatten)]
+    format: MeshFormat,
 
     #[command(flatten)]
     source: Source,
@@ -60,6 +63,7 @@ enum Goal {
 impl Optimize {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
         self.check_paths()?;
+        let destination = self.format.to(&self.output)?;
         let begun = self.source.begin(self.patience.begin()?)?;
         let goal = match self.goal {
             Goal::Planar => optimize::Goal::Planar,
@@ -69,7 +73,7 @@ impl Optimize {
         let done = optimize(mesh, surface, goal, begun.policy, &begun.config, &begun.progress)
             .map_err(|e| self.source.failure(e))?;
         begun.progress.progress(Phase::Write, 0, 1, None);
-        io::write(&self.output, &done.mesh)?;
+        destination.write(&done.mesh)?;
         if let Some(path) = &self.json {
             output::file(path, &output::json(&done.report)?)?;
         }

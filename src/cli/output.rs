@@ -1,9 +1,11 @@
 //! The two streams: data on standard output, words on standard error.
 
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, Write};
 use std::path::Path;
 
-use quadmend::io::{WriteError, write_atomically};
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use quadmend::io::{Destination, FORMATS, Format, write_atomically};
 use quadmend::mesh::PolyMesh;
 use quadmend::planner::schedule::EditRecord;
 use quadmend::render::Image;
@@ -11,16 +13,30 @@ use serde::Serialize;
 
 use super::failure::Failure;
 
-/// Writes data to standard output. A reader that has seen enough (`| head`) is not an error.
-pub(super) fn data(text: &str) -> Result<(), Failure> {
-    let mut out = io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            let file = "standard output".to_owned();
-            Err(WriteError::Io { file, source: error }.into())
-        }
-        _ => Ok(()),
+/// In what format a mesh is written.
+#[derive(Debug, Args)]
+pub(super) struct MeshFormat {
+    /// Format of the mesh that is written; a name that ends in .gz packs it as well [default: by
+    /// the name of the file, obj for standard output]
+    #[arg(long, value_name = "FORMAT", value_parser = written_formats())]
+    format: Option<String>,
+}
+
+fn written_formats() -> PossibleValuesParser {
+    let written = FORMATS.iter().filter(|f| f.is_written());
+    written.map(|f| f.name).collect::<Vec<_>>().into()
+}
+
+impl MeshFormat {
+    /// Where a mesh goes, if it can go there.
+    pub(super) fn to<'a>(&self, path: &'a Path) -> Result<Destination<'a>, Failure> {
+        Ok(Destination::new(path, self.format.as_deref().and_then(Format::named))?)
     }
+}
+
+/// Writes data to standard output.
+pub(super) fn data(text: &str) -> Result<(), Failure> {
+    file(Path::new("-"), text)
 }
 
 /// Writes a line to standard error, for people.
@@ -44,9 +60,6 @@ pub(super) fn log(edits: &[EditRecord], mesh: &PolyMesh) -> Result<String, Failu
 
 /// Writes a text to a file, whole or not at all; `-` is standard output.
 pub(super) fn file(path: &Path, text: &str) -> Result<(), Failure> {
-    if path.as_os_str() == "-" {
-        return data(text);
-    }
     Ok(write_atomically(path, |out| out.write_all(text.as_bytes()))?)
 }
 

@@ -32,8 +32,7 @@ impl Files<'_> {
         let inputs: Vec<&Path> = self.meshes.iter().chain(self.texts).copied().collect();
         let outputs: Vec<&Path> = self.output.iter().chain(self.others).copied().collect();
         keep_apart(&inputs, &outputs, self.force)?;
-        self.output.map_or(Ok(()), io::check_output)?;
-        Ok(self.others.iter().try_for_each(|path| io::check_place(path))?)
+        Ok(outputs.into_iter().try_for_each(io::check_place)?)
     }
 }
 

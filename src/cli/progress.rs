@@ -7,8 +7,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use quadmend::io::{self, Loaded};
-use quadmend::mesh::PolyMesh;
+use quadmend::io::{self, Loaded, ReadOptions};
 use quadmend::report::Timing;
 use quadmend::watch::{Phase, Watch};
 
@@ -129,14 +128,9 @@ impl Progress {
         }
     }
 
-    /// Reads a mesh and says what was left out.
-    pub(super) fn read(&self, path: &Path) -> Result<PolyMesh, Failure> {
-        Ok(self.load(path)?.mesh)
-    }
-
-    /// The same, with what else is known about the file.
-    pub(super) fn load(&self, path: &Path) -> Result<Loaded, Failure> {
-        let loaded = io::read(path)?;
+    /// Reads a mesh within limits, and says what was left out.
+    pub(super) fn load(&self, path: &Path, options: &ReadOptions) -> Result<Loaded, Failure> {
+        let loaded = io::read_within(path, options)?;
         for warning in &loaded.warnings {
             self.tell(&format!("warning: {warning}"));
         }

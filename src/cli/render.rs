@@ -28,7 +28,7 @@ T-junction. All views of a picture have the same scale. The same input gives the
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Render {
-    /// The meshes to draw, side by side (OBJ, - for standard input)
+    /// The meshes to draw, side by side (OBJ, PLY or OFF, - for standard input)
     #[arg(required = true)]
     meshes: Vec<PathBuf>,
 
@@ -37,7 +37,8 @@ pub(super) struct Render {
     output: PathBuf,
 
     /// Surface that the meshes were made from: its creases are the sharp features, and distances
-    /// are those to it (OBJ, - for standard input) [default: creases of each mesh itself]
+    /// are those to it (OBJ, PLY, OFF or STL, - for standard input) [default: creases of each mesh
+    /// itself]
     #[arg(short, long, value_name = "MESH")]
     reference: Option<PathBuf>,
 
@@ -61,10 +62,10 @@ impl Render {
         let config = self.settings.load()?;
         let progress = self.running.start(Stop::default())?;
         progress.progress(Phase::Read, 0, 1, None);
-        let meshes: Vec<PolyMesh> =
-            self.meshes.iter().map(|path| progress.read(path)).collect::<Result<_, _>>()?;
-        let reference = self.reference.as_deref().map(|path| {
-            let mesh = progress.read(path)?;
+        let read = |path: &PathBuf| Ok(progress.load(path, &config.read)?.mesh);
+        let meshes: Vec<PolyMesh> = self.meshes.iter().map(read).collect::<Result<_, Failure>>()?;
+        let reference = self.reference.as_ref().map(|path| {
+            let mesh = read(path)?;
             Reference::new(&mesh).map_err(|e| Failure::of_file(&paths::shown(path), e))
         });
         let reference = reference.transpose()?;

@@ -17,11 +17,11 @@ use super::stop::Stop;
 /// A mesh, the surface that it stays on, and the settings.
 #[derive(Debug, Args)]
 pub(super) struct Source {
-    /// The mesh, polygons of any degree (OBJ, - for standard input)
+    /// The mesh, polygons of any degree (OBJ, PLY or OFF, - for standard input)
     pub(super) input: PathBuf,
 
     /// Surface to stay on, usually the scan that was remeshed, in the same position and scale
-    /// (OBJ, - for standard input) [default: the input]
+    /// (OBJ, PLY, OFF or STL, - for standard input) [default: the input]
     #[arg(short, long, value_name = "MESH")]
     pub(super) reference: Option<PathBuf>,
 
@@ -63,8 +63,9 @@ impl Source {
         let config = self.settings.load()?;
         let progress = self.running.start(stop)?;
         progress.progress(Phase::Read, 0, 1, None);
-        let input = progress.load(&self.input)?;
-        let reference = self.reference.as_deref().map(|path| progress.load(path)).transpose()?;
+        let input = progress.load(&self.input, &config.read)?;
+        let reference =
+            self.reference.as_deref().map(|path| progress.load(path, &config.read)).transpose()?;
         let policy = if self.strict { MendPolicy::Strict } else { MendPolicy::Mend };
         Ok(Begun { progress, config, input, reference, policy, stop })
     }

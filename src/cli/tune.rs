@@ -6,6 +6,7 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
+use quadmend::config::Config;
 use quadmend::tune::space::Varied;
 use quadmend::tune::{self, Case, Findings, Goal, Judged, Observer, Task, TuneError};
 use quadmend::watch::{Phase, Watch};
@@ -100,7 +101,7 @@ impl Tune {
         let files = self.files()?;
         self.check_paths(&files)?;
         let progress = self.running.start(Stop::default())?;
-        let cases = self.cases(&files, &progress)?;
+        let cases = self.cases(&files, &start, &progress)?;
         output::folder(&self.output)?;
         let console = Console {
             progress: &progress,
@@ -190,11 +191,17 @@ impl Tune {
         Files { meshes: &meshes, texts: &texts, output: None, others: &[], force: false }.check()
     }
 
-    fn cases(&self, files: &[PathBuf], progress: &Progress) -> Result<Vec<Case>, Failure> {
+    fn cases(
+        &self,
+        files: &[PathBuf],
+        config: &Config,
+        progress: &Progress,
+    ) -> Result<Vec<Case>, Failure> {
         progress.progress(Phase::Read, 0, 1, None);
+        let load = |path: &Path| progress.load(path, &config.read);
         let one = |file: &PathBuf| {
-            let mesh = progress.load(file)?;
-            let reference = self.reference_of(file).map(|r| progress.load(&r)).transpose()?;
+            let mesh = load(file)?;
+            let reference = self.reference_of(file).map(|r| load(&r)).transpose()?;
             let sha256 = reference.as_ref().map_or_else(String::new, |r| r.sha256.clone());
             Ok(Case {
                 file: paths::shown(file),

@@ -68,6 +68,7 @@ macro_rules! sections {
 }
 
 sections! {
+    read: crate::io::ReadOptions,
     features: crate::surface::FeatureOptions,
     plan: crate::planner::PlanOptions,
     cost: crate::planner::cost::CostOptions,

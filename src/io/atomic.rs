@@ -8,9 +8,12 @@ use std::fs::{self, File, Metadata};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use tempfile::NamedTempFile;
+
 use super::{WriteError, display_name, is_standard_stream};
 
-/// Writes what `fill` gives to `path`, whole or not at all; `-` is standard output.
+/// Writes what `fill` gives to `path`, whole or not at all; `-` is standard output, whose reader may
+/// stop when it has seen enough (`| head`).
 ///
 /// A symbolic link keeps pointing where it did and what it points to is replaced. Devices and
 /// pipes cannot be replaced and are written to directly.
@@ -20,23 +23,53 @@ pub fn write_atomically(
 ) -> Result<(), WriteError> {
     let file = display_name(path, "standard output");
     if is_standard_stream(path) {
-        return fill_and_flush(io::stdout().lock(), fill)
-            .map_err(|source| WriteError::Io { file, source });
+        return match fill_and_flush(io::stdout().lock(), fill) {
+            Err(source) if source.kind() != io::ErrorKind::BrokenPipe => {
+                Err(WriteError::Io { file, source })
+            }
+            _ => Ok(()),
+        };
     }
-    // A path that cannot be resolved is a new file, or fails below with a message of its own.
+    check_place(path)?;
+    // A path that cannot be resolved is a new file.
     let target = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
     match fs::metadata(&target) {
-        Ok(old) if old.is_dir() => return Err(WriteError::Directory { file }),
-        Ok(old) if old.is_file() && old.permissions().readonly() => {
-            return Err(WriteError::Protected { file });
-        }
         Ok(old) if !old.is_file() => write_through(&target, fill),
         old => replace(&target, old.ok().as_ref(), fill),
     }
-    .map_err(|source| match source.kind() {
-        io::ErrorKind::NotFound if !folder_of(&target).is_dir() => WriteError::NoFolder { file },
-        _ => WriteError::Io { file, source },
-    })
+    .map_err(|source| WriteError::Io { file, source })
+}
+
+/// Whether there could be a file at `path`, so that a long computation need not end with a result
+/// that has nowhere to go: its folder exists and takes files, and it is no folder itself.
+pub fn check_place(path: &Path) -> Result<(), WriteError> {
+    let file = display_name(path, "standard output");
+    let target = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+    let folder = folder_of(&target);
+    match fs::metadata(&target) {
+        _ if is_standard_stream(path) => Ok(()),
+        Ok(old) if old.is_dir() => Err(WriteError::Directory { file }),
+        Ok(old) if old.is_file() && old.permissions().readonly() => {
+            Err(WriteError::Protected { file })
+        }
+        Ok(old) if !old.is_file() => Ok(()),
+        _ if !folder.is_dir() => Err(WriteError::NoFolder { file }),
+        _ => match temporary_in(&folder) {
+            Ok(_) => Ok(()),
+            Err(source) => Err(WriteError::Io { file, source }),
+        },
+    }
+}
+
+fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".quadmend-").suffix(".tmp");
+    // The usual permissions of a new file, less the umask, and not those of a secret.
+    #[cfg(unix)]
+    let open = std::os::unix::fs::PermissionsExt::from_mode(0o666);
+    #[cfg(unix)]
+    builder.permissions(open);
+    builder.tempfile_in(folder)
 }
 
 fn replace(
@@ -45,14 +78,7 @@ fn replace(
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
     let folder = folder_of(target);
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".quadmend-").suffix(".tmp");
-    // The usual permissions of a new file, less the umask, and not those of a secret.
-    #[cfg(unix)]
-    let open = std::os::unix::fs::PermissionsExt::from_mode(0o666);
-    #[cfg(unix)]
-    builder.permissions(open);
-    let mut temporary = builder.tempfile_in(&folder)?;
+    let mut temporary = temporary_in(&folder)?;
     fill_and_flush(temporary.as_file_mut(), fill)?;
     if let Some(old) = old {
         temporary.as_file().set_permissions(old.permissions())?;

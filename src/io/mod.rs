@@ -1,52 +1,106 @@
 //! Reading and writing meshes: one file a format, found by the extension of the file name.
 //!
-//! A format is one implementation of [`Format`] and one line in [`FORMATS`]. Reading gives a
-//! soup of polygons as the file has it; `mesh::mend` makes it fit to be edited. The path `-`
-//! stands for standard input and output, in the first format of the list.
+//! A format is one [`Format`] and one line in [`FORMATS`]. Reading gives a soup of polygons as the
+//! file has it; `mesh::mend` makes it fit to be edited. Files are read and written in one pass, and
+//! never held as a whole. Packed files (`mesh.ply.gz`) are unpacked on the way. The path `-` stands
+//! for standard input, whose format its first bytes tell, and for standard output.
 //!
 //! *Invariant:* nothing is printed; what a person should know comes back as a [`Warning`].
 
 mod atomic;
+mod fault;
 mod obj;
+mod off;
+mod options;
+mod ply;
+mod soup;
+mod source;
+mod stl;
+mod text;
 
 use std::fmt;
-use std::io::{self, Read, Write};
+use std::fs::File;
+use std::io::{self, BufRead, Read, Write};
 use std::path::Path;
 
-use thiserror::Error;
+use flate2::Compression;
+use flate2::write::GzEncoder;
 
-use crate::mesh::{MeshError, PolyMesh};
+use crate::mesh::PolyMesh;
 
-pub use atomic::write_atomically;
-pub use obj::Obj;
+pub use atomic::{check_place, write_atomically};
+pub use fault::{ReadError, ReadFault, WriteError};
+pub use obj::OBJ;
+pub use off::OFF;
+pub use options::ReadOptions;
+pub use ply::{PLY, PLY_ASCII, PLY_BIG_ENDIAN};
+pub use source::fingerprint;
+pub use stl::STL;
 
-/// All formats, the default one first.
-pub const FORMATS: &[&dyn Format] = &[&Obj];
+use fault::{Located, whole};
+use soup::Content;
+use source::Fingerprinted;
+
+/// All formats, the default one first. Of several with the same extension, the first is written.
+pub const FORMATS: &[Format] = &[OBJ, PLY, PLY_ASCII, PLY_BIG_ENDIAN, OFF, STL];
+
+/// Red, green and blue, from 0 to 1.
+pub type Colour = [f64; 3];
 
 /// A file format for polygon meshes.
-pub trait Format: Sync {
-    /// What people call it.
-    fn name(&self) -> &'static str;
-
+#[derive(Debug, Clone, Copy)]
+pub struct Format {
+    /// What it is called on the command line.
+    pub name: &'static str,
     /// File name extensions in lower case, without the dot.
-    fn extensions(&self) -> &'static [&'static str];
+    pub extensions: &'static [&'static str],
+    /// How such a file may begin.
+    starts: &'static [&'static str],
+    read: fn(&mut dyn BufRead, &ReadOptions) -> Result<Content, Located>,
+    /// Writes a mesh so that reading it gives the same points and faces again.
+    write: Option<Writer>,
+}
 
-    /// Reads a whole file. `file` is its name, for messages. Linear in the size of the file.
-    fn read(&self, bytes: &[u8], file: &str) -> Result<Loaded, ReadError>;
+/// Writes a mesh, perhaps with a colour for each vertex.
+type Writer = fn(&PolyMesh, Option<&[Colour]>, &mut dyn Write) -> io::Result<()>;
 
-    /// Writes a mesh so that reading it gives the same mesh again. Linear in its size.
-    fn write(&self, mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()>;
+impl Format {
+    /// The format called `name`.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        FORMATS.iter().find(|f| f.name == name).copied()
+    }
 
-    /// Writes a mesh with a colour (red, green, blue, 0 to 1) for each vertex. Formats that have
-    /// none leave them out.
-    fn write_coloured(
-        &self,
-        mesh: &PolyMesh,
-        colours: &[[f64; 3]],
-        out: &mut dyn Write,
-    ) -> io::Result<()> {
-        let _ = colours;
-        self.write(mesh, out)
+    /// The format that the name of a file tells, packed or not.
+    #[must_use]
+    pub fn of(path: &Path) -> Option<Self> {
+        format_of(path).ok()
+    }
+
+    /// Whether meshes can be written in it.
+    #[must_use]
+    pub fn is_written(&self) -> bool {
+        self.write.is_some()
+    }
+
+    /// Reads a whole file, packed or not, from `source`; `file` is its name, for messages. Linear
+    /// in its size.
+    pub fn read(
+        self,
+        source: impl Read,
+        file: &str,
+        options: &ReadOptions,
+    ) -> Result<Loaded, ReadError> {
+        read_from(source, Some(self), file, options)
+    }
+
+    /// The bytes of a mesh in this format, not packed; none if it is not written.
+    #[must_use]
+    pub fn bytes(self, mesh: &PolyMesh, colours: Option<&[Colour]>) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        // A vector takes everything.
+        let _ = self.write.map(|write| write(mesh, colours, &mut bytes));
+        bytes
     }
 }
 
@@ -70,7 +124,7 @@ pub enum Warning {
         file: String,
         /// What was dropped, in words.
         what: Vec<&'static str>,
-        /// First line that has any of it, from 1.
+        /// First line that has or announces any of it, from 1.
         line: usize,
     },
 }
@@ -83,232 +137,166 @@ impl fmt::Display for Warning {
     }
 }
 
-/// Why a file could not be read, and where.
-#[derive(Debug, Error)]
-#[error("{file}{}: {fault}", line.map(|l| format!(":{l}")).unwrap_or_default())]
-pub struct ReadError {
-    /// Name of the file.
-    pub file: String,
-    /// Line of the file, from 1, if the fault has one.
-    pub line: Option<usize>,
-    /// What is wrong with it.
-    #[source]
-    pub fault: ReadFault,
+/// What a reader left out, in words, each once, with its first line.
+#[derive(Debug, Default)]
+struct Dropped(Vec<(&'static str, usize)>);
+
+impl Dropped {
+    fn note(&mut self, what: &'static str, line: usize) {
+        if self.0.iter().all(|&(known, _)| known != what) {
+            self.0.push((what, line));
+        }
+    }
+
+    fn warning(self, file: &str) -> Option<Warning> {
+        let line = self.0.iter().map(|&(_, line)| line).min()?;
+        let what = self.0.into_iter().map(|(what, _)| what).collect();
+        Some(Warning::Dropped { file: file.to_owned(), what, line })
+    }
 }
 
-/// What can be wrong with a file. Every message says what to do about it.
-#[derive(Debug, Error)]
-pub enum ReadFault {
-    /// There is no such file.
-    #[error("no such file; check the path")]
-    Missing,
-    /// The path leads to a folder.
-    #[error("is a folder, not a mesh; name a file in it")]
-    Directory,
-    /// The system refused to read it.
-    #[error("cannot be read ({0}); check its permissions and the disk")]
-    Unreadable(io::Error),
-    /// No reader for this file name.
-    #[error("no reader for files {extension}; known extensions: {known}")]
-    UnknownFormat {
-        /// The extension with its dot in quotes, or words for none.
-        extension: String,
-        /// Extensions that can be read.
-        known: String,
-    },
-    /// Nothing in it.
-    #[error("the file is empty; write the mesh again from the program that made it")]
-    Empty,
-    /// Not a text file.
-    #[error("is not a text file (byte {offset} is zero); export it as a text OBJ")]
-    Binary {
-        /// Where the first zero byte is, from 0.
-        offset: usize,
-    },
-    /// Text in another encoding.
-    #[error("is not UTF-8 text; save the file in UTF-8")]
-    NotUtf8,
-    /// A line that the format does not allow.
-    #[error("{reason} in `{text}`; {advice}")]
-    Syntax {
-        /// What is wrong.
-        reason: &'static str,
-        /// The words in question, shortened.
-        text: String,
-        /// What to do about it.
-        advice: &'static str,
-    },
-    /// The file stops in the middle of a line.
-    #[error("the file ends in the middle of a line (`{text}`); it was cut: copy it again")]
-    Cut {
-        /// What there is of the line.
-        text: String,
-    },
-    /// A face names a vertex that does not exist.
-    #[error(
-        "face {face} names vertex {index}, but the file has vertices 1 to {vertices}; \
-         the file is damaged or cut: write it again"
-    )]
-    IndexOutOfRange {
-        /// Number of the face in the file, from 1.
-        face: usize,
-        /// The index as it is written.
-        index: String,
-        /// How many vertices the file has, or had so far for a negative index.
-        vertices: usize,
-    },
-    /// A coordinate is NaN, infinite, or too large to compute with.
-    #[error(
-        "vertex {vertex} has the coordinate `{text}`, which is not a finite number below 1e100; \
-         repair or rescale the model in the program that made it"
-    )]
-    NotFinite {
-        /// Number of the vertex in the file, from 1.
-        vertex: usize,
-        /// The coordinate as it is written.
-        text: String,
-    },
-    /// No polygon in the file.
-    #[error(
-        "has {vertices} vertices but no faces; a mesh is needed, not a point cloud or curves \
-         (or the file was cut)"
-    )]
-    NoFaces {
-        /// How many vertices it has.
-        vertices: usize,
-    },
-    /// The polygons make no mesh.
-    #[error("{0}; split the model into smaller ones")]
-    Mesh(#[from] MeshError),
-}
-
-/// Why a file could not be written. An older file of that name is left as it was.
-#[derive(Debug, Error)]
-pub enum WriteError {
-    /// No writer for this file name.
-    #[error("{file}: no writer for files {extension}; known extensions: {known}")]
-    UnknownFormat {
-        /// Name of the file.
-        file: String,
-        /// The extension with its dot in quotes, or words for none.
-        extension: String,
-        /// Extensions that can be written.
-        known: String,
-    },
-    /// The path leads to a folder.
-    #[error("{file}: is a folder; name a file in it")]
-    Directory {
-        /// Name of the file.
-        file: String,
-    },
-    /// The folder is not there.
-    #[error("{file}: the folder it should go to does not exist; create it first")]
-    NoFolder {
-        /// Name of the file.
-        file: String,
-    },
-    /// The old file may not be replaced.
-    #[error("{file}: is write-protected; choose another name or allow writing")]
-    Protected {
-        /// Name of the file.
-        file: String,
-    },
-    /// The system refused.
-    #[error(
-        "{file}: cannot be written ({source}); check permissions and free space (nothing was left \
-         behind, an older file is unchanged)"
-    )]
-    Io {
-        /// Name of the file.
-        file: String,
-        /// What the system said.
-        source: io::Error,
-    },
-}
-
-/// Reads the mesh at `path`; `-` is standard input. The whole file is held in memory meanwhile.
+/// Reads the mesh at `path`, as large as it may be by default; `-` is standard input.
 pub fn read(path: &Path) -> Result<Loaded, ReadError> {
+    read_within(path, &ReadOptions::default())
+}
+
+/// Reads the mesh at `path` within limits; `-` is standard input.
+pub fn read_within(path: &Path, options: &ReadOptions) -> Result<Loaded, ReadError> {
     let file = display_name(path, "standard input");
+    if is_standard_stream(path) {
+        return read_from(io::stdin().lock(), None, &file, options);
+    }
     let fail = |fault| ReadError { file: file.clone(), line: None, fault };
-    let format = format_of(path).map_err(|(extension, known)| {
-        // A missing file or a folder is the better news, whatever it is called.
-        fail(read_bytes(path).err().unwrap_or(ReadFault::UnknownFormat { extension, known }))
+    // A missing file or a folder is the better news, whatever it is called.
+    let source = open(path).map_err(fail)?;
+    let format = format_of(path).map_err(|extension| {
+        fail(ReadFault::UnknownFormat { extension, known: extensions(|_| true) })
     })?;
-    format.read(&read_bytes(path).map_err(fail)?, &file)
+    format.read(source, &file, options)
+}
+
+fn open(path: &Path) -> Result<File, ReadFault> {
+    match File::open(path) {
+        _ if path.is_dir() => Err(ReadFault::Directory),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Err(ReadFault::Missing),
+        opened => opened.map_err(ReadFault::Unreadable),
+    }
+}
+
+/// Reads a mesh in a format, or in the one that its first bytes tell.
+fn read_from(
+    source: impl Read,
+    format: Option<Format>,
+    file: &str,
+    options: &ReadOptions,
+) -> Result<Loaded, ReadError> {
+    let mut source = Fingerprinted::new(source);
+    let content = source.open(options, |content| match content.fill_buf().map_err(whole)? {
+        [] => Err(whole(ReadFault::Empty)),
+        start => (format.unwrap_or_else(|| format_that_starts(start)).read)(content, options),
+    });
+    let content =
+        content.map_err(|(line, fault)| ReadError { file: file.to_owned(), line, fault })?;
+    let warnings = content.dropped.warning(file).into_iter().collect();
+    Ok(Loaded { mesh: content.mesh, warnings, sha256: source.sha256() })
+}
+
+/// The format whose files start like this; the first of all if none does.
+fn format_that_starts(bytes: &[u8]) -> Format {
+    let starts = |f: &&Format| f.starts.iter().any(|start| bytes.starts_with(start.as_bytes()));
+    FORMATS.iter().find(starts).copied().unwrap_or(OBJ)
 }
 
 /// Writes `mesh` to `path`, whole or not at all; `-` is standard output.
 pub fn write(path: &Path, mesh: &PolyMesh) -> Result<(), WriteError> {
-    let format = writer_for(path)?;
-    write_atomically(path, |out| format.write(mesh, out))
+    Destination::new(path, None)?.write(mesh)
 }
 
-/// Writes `mesh` with a colour for each vertex to `path`, whole or not at all.
-///
-/// # Panics
-/// If there is not one colour for each vertex: that is a bug of the caller.
-pub fn write_coloured(
-    path: &Path,
-    mesh: &PolyMesh,
-    colours: &[[f64; 3]],
-) -> Result<(), WriteError> {
-    assert_eq!(colours.len(), mesh.vertex_count(), "one colour for each vertex");
-    let format = writer_for(path)?;
-    write_atomically(path, |out| format.write_coloured(mesh, colours, out))
+/// Where a mesh goes, and in what format.
+#[derive(Debug, Clone, Copy)]
+pub struct Destination<'a> {
+    path: &'a Path,
+    write: Writer,
 }
 
-/// Whether [`write`] could write to `path` as far as its name tells, so that a long computation
-/// need not end with a mesh that has nowhere to go.
-pub fn check_output(path: &Path) -> Result<(), WriteError> {
-    check_place(path)?;
-    writer_for(path).map(|_| ())
-}
+impl<'a> Destination<'a> {
+    /// A file in the format that is given or that its name tells; `-` is standard output. Fails if
+    /// there could be no such file, so that a long computation need not end with a mesh that has
+    /// nowhere to go.
+    pub fn new(path: &'a Path, format: Option<Format>) -> Result<Self, WriteError> {
+        check_place(path)?;
+        let format = format.map_or_else(|| format_of(path), Ok);
+        let written = format.and_then(|format| {
+            let words = || format!("of the format {} (it is only read)", format.name);
+            format.write.ok_or_else(words)
+        });
+        let write = written.map_err(|extension| WriteError::UnknownFormat {
+            file: path.display().to_string(),
+            extension,
+            known: extensions(Format::is_written),
+        })?;
+        Ok(Self { path, write })
+    }
 
-/// Whether there could be a file at `path`: its folder exists, and it is no folder itself.
-pub fn check_place(path: &Path) -> Result<(), WriteError> {
-    let file = path.display().to_string();
-    let folder = path.parent().filter(|f| !f.as_os_str().is_empty());
-    match folder {
-        _ if path.is_dir() => Err(WriteError::Directory { file }),
-        Some(folder) if !folder.is_dir() => Err(WriteError::NoFolder { file }),
-        _ => Ok(()),
+    /// Writes `mesh`, whole or not at all.
+    pub fn write(&self, mesh: &PolyMesh) -> Result<(), WriteError> {
+        self.write_with(mesh, None)
+    }
+
+    /// Writes `mesh` with a colour for each vertex, whole or not at all.
+    ///
+    /// # Panics
+    /// If there is not one colour for each vertex: that is a bug of the caller.
+    pub fn write_coloured(&self, mesh: &PolyMesh, colours: &[Colour]) -> Result<(), WriteError> {
+        assert_eq!(colours.len(), mesh.vertex_count(), "one colour for each vertex");
+        self.write_with(mesh, Some(colours))
+    }
+
+    fn write_with(&self, mesh: &PolyMesh, colours: Option<&[Colour]>) -> Result<(), WriteError> {
+        write_atomically(self.path, |out| {
+            if !is_packed(self.path) {
+                return (self.write)(mesh, colours, out);
+            }
+            // No name and no time: the same mesh gives the same bytes.
+            let mut packed = GzEncoder::new(out, Compression::default());
+            (self.write)(mesh, colours, &mut packed)?;
+            packed.finish().map(|_| ())
+        })
     }
 }
 
-fn writer_for(path: &Path) -> Result<&'static dyn Format, WriteError> {
-    format_of(path).map_err(|(extension, known)| {
-        let file = path.display().to_string();
-        WriteError::UnknownFormat { file, extension, known }
-    })
-}
-
-/// The format for `path`, or its extension in words and the extensions that are known.
-fn format_of(path: &Path) -> Result<&'static dyn Format, (String, String)> {
+/// The format that the name tells, or its extension in words.
+fn format_of(path: &Path) -> Result<Format, String> {
     if is_standard_stream(path) {
         return Ok(FORMATS[0]);
     }
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-    let found = extension
-        .as_deref()
-        .and_then(|e| FORMATS.iter().copied().find(|f| f.extensions().contains(&e)));
-    found.ok_or_else(|| {
-        let known = FORMATS.iter().flat_map(|f| f.extensions()).map(|e| format!(".{e}"));
-        let words = extension.map_or("without an extension".into(), |e| format!("named `.{e}`"));
-        (words, known.collect::<Vec<_>>().join(", "))
+    let packed = is_packed(path).then(|| path.with_extension(""));
+    let extension = lower_extension(packed.as_deref().unwrap_or(path));
+    let known = |f: &&Format| extension.as_deref().is_some_and(|e| f.extensions.contains(&e));
+    FORMATS.iter().find(known).copied().ok_or_else(|| {
+        let end = if packed.is_some() { ".gz" } else { "" };
+        extension.map_or("without an extension".into(), |e| format!("named `.{e}{end}`"))
     })
 }
 
-fn read_bytes(path: &Path) -> Result<Vec<u8>, ReadFault> {
-    if is_standard_stream(path) {
-        let mut bytes = Vec::new();
-        io::stdin().lock().read_to_end(&mut bytes).map_err(ReadFault::Unreadable)?;
-        return Ok(bytes);
-    }
-    std::fs::read(path).map_err(|error| match error.kind() {
-        io::ErrorKind::NotFound => ReadFault::Missing,
-        _ if path.is_dir() => ReadFault::Directory,
-        _ => ReadFault::Unreadable(error),
-    })
+/// The extensions of some formats, each once.
+fn extensions(which: impl Fn(&Format) -> bool) -> String {
+    let mut known: Vec<String> = FORMATS
+        .iter()
+        .filter(|f| which(f))
+        .flat_map(|f| f.extensions)
+        .map(|e| format!(".{e}"))
+        .collect();
+    known.dedup();
+    known.join(", ") + ", each also with .gz"
+}
+
+fn is_packed(path: &Path) -> bool {
+    lower_extension(path).as_deref() == Some("gz")
+}
+
+fn lower_extension(path: &Path) -> Option<String> {
+    path.extension().map(|e| e.to_string_lossy().to_lowercase())
 }
 
 fn is_standard_stream(path: &Path) -> bool {
@@ -317,16 +305,4 @@ fn is_standard_stream(path: &Path) -> bool {
 
 fn display_name(path: &Path, stream: &str) -> String {
     if is_standard_stream(path) { stream.to_owned() } else { path.display().to_string() }
-}
-
-/// SHA-256 of `bytes`, in hexadecimal digits.
-#[must_use]
-pub fn fingerprint(bytes: &[u8]) -> String {
-    use sha2::{Digest, Sha256};
-    use std::fmt::Write;
-    Sha256::digest(bytes).iter().fold(String::new(), |mut text, byte| {
-        // Writing to a string cannot fail.
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
 }

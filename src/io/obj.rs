@@ -10,74 +10,89 @@
 mod feed;
 mod statements;
 
-use std::io::{self, Write};
+use std::io::{self, BufRead, Write};
 
 use tobj::LoadOptions;
 
-use self::feed::{Feed, bad_number, excerpt};
+use self::feed::Feed;
 use self::statements::Statements;
-use super::{Format, Loaded, ReadError, ReadFault, Warning, fingerprint};
-use crate::mesh::{MeshError, Point, PolyMesh};
-
-/// Coordinates beyond this would overflow where lengths are squared and multiplied.
-const LARGEST_COORDINATE: f64 = 1e100;
+use super::fault::{Located, whole};
+use super::soup::{Content, Tally};
+use super::text::{Lines, excerpt, write_number};
+use super::{Colour, Format, ReadFault, ReadOptions};
+use crate::mesh::{Point, PolyMesh};
 
 /// The Wavefront OBJ format.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Obj;
+pub const OBJ: Format =
+    Format { name: "obj", extensions: &["obj"], starts: &[], read, write: Some(write) };
 
-impl Format for Obj {
-    fn name(&self) -> &'static str {
-        "Wavefront OBJ"
-    }
-
-    fn extensions(&self) -> &'static [&'static str] {
-        &["obj"]
-    }
-
-    fn read(&self, bytes: &[u8], file: &str) -> Result<Loaded, ReadError> {
-        let at = |(line, fault)| ReadError { file: file.to_owned(), line, fault };
-        check_text(bytes).map_err(at)?;
-        let vertices = count_vertices(bytes);
-        if vertices >= i32::MAX as usize {
-            let error = MeshError::TooLarge { what: "vertices", count: vertices };
-            return Err(at((None, error.into())));
-        }
-        let mut feed = Feed::new(bytes, vertices);
-        let model = load(&mut feed).map_err(at)?;
-        let mesh = build(bytes, &mut feed, model).map_err(at)?;
-        let warnings = dropped_warning(&feed, file);
-        Ok(Loaded { mesh, warnings, sha256: fingerprint(bytes) })
-    }
-
-    fn write(&self, mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
-        for point in mesh.points() {
-            write_vertex(out, point.iter())?;
-        }
-        write_faces(mesh, out)
-    }
-
-    /// As three more numbers on each `v` line, which Blender, `MeshLab` and others understand.
-    fn write_coloured(
-        &self,
-        mesh: &PolyMesh,
-        colours: &[[f64; 3]],
-        out: &mut dyn Write,
-    ) -> io::Result<()> {
-        for (point, colour) in mesh.points().iter().zip(colours) {
-            write_vertex(out, point.iter().chain(colour))?;
-        }
-        write_faces(mesh, out)
-    }
+fn read(source: &mut dyn BufRead, options: &ReadOptions) -> Result<Content, Located> {
+    let lines = Lines::new(source).map_err(whole)?;
+    let mut feed = Feed::new(Statements::new(lines), Tally::new(options));
+    let model = load(&mut feed)?;
+    feed.tally.finish().map_err(whole)?;
+    let mesh = build(&mut feed, model).map_err(whole)?;
+    Ok(Content { mesh, dropped: feed.dropped })
 }
 
-fn write_vertex<'a>(
-    out: &mut dyn Write,
-    mut numbers: impl Iterator<Item = &'a f64>,
-) -> io::Result<()> {
-    out.write_all(b"v")?;
-    numbers.try_for_each(|&x| write_number(out, x))?;
-    out.write_all(b"\n")
+/// Lets `tobj` read the feed: one model whose last face is the anchor.
+fn load(feed: &mut Feed<'_>) -> Result<tobj::Mesh, Located> {
+    let no_materials = |_: &std::path::Path| Err(tobj::LoadError::OpenFileFailed);
+    let loaded = tobj::load_obj_buf(feed, &LoadOptions::default(), no_materials);
+    if let Some(fault) = feed.fault.take() {
+        return Err(fault);
+    }
+    // Everything in the lines has been checked, so this refuses nothing that we know of.
+    let refused = |_| ReadFault::Syntax {
+        reason: "a line that cannot be understood",
+        text: excerpt(&feed.current.text),
+        advice: "correct or remove the line",
+    };
+    let (models, _) = loaded.map_err(|e| (Some(feed.current.line), refused(e)))?;
+    Ok(models.into_iter().next().map(|m| m.mesh).unwrap_or_default())
+}
+
+/// The mesh before the anchor, its vertices in the order of the file again.
+fn build(feed: &mut Feed<'_>, model: tobj::Mesh) -> Result<PolyMesh, ReadFault> {
+    let mut corners = model.indices;
+    let anchor = corners.split_off(corners.len().saturating_sub(feed.tally.vertices));
+    let point = |&v: &u32| {
+        let at = 3 * v as usize;
+        Point::new(model.positions[at], model.positions[at + 1], model.positions[at + 2])
+    };
+    let points: Vec<Point> = anchor.iter().map(point).collect();
+    let mut in_file = vec![0; points.len()];
+    for (v, &moved) in (0_u32..).zip(&anchor) {
+        in_file[moved as usize] = v;
+    }
+    for v in &mut corners {
+        *v = in_file[*v as usize];
+    }
+    let offsets = offsets(&model.face_arities, feed.groups.len());
+    let mesh = PolyMesh::from_rows(points, offsets, corners)?;
+    let (groups, names) = (std::mem::take(&mut feed.groups), std::mem::take(&mut feed.group_names));
+    Ok(mesh.with_groups(groups, names))
+}
+
+/// Where each face begins. Without arities everything is a triangle.
+fn offsets(arities: &[u32], faces: usize) -> Vec<u32> {
+    let mut end = 0;
+    let ends = (0..faces).map(|f| {
+        end += arities.get(f).map_or(3, |&d| d);
+        end
+    });
+    std::iter::once(0).chain(ends).collect()
+}
+
+/// Colours are three more numbers on each `v` line, which Blender, `MeshLab` and others understand.
+fn write(mesh: &PolyMesh, colours: Option<&[Colour]>, out: &mut dyn Write) -> io::Result<()> {
+    for (v, point) in mesh.points().iter().enumerate() {
+        out.write_all(b"v")?;
+        let mut numbers = point.iter().chain(colours.map_or(&[][..], |c| &c[v]));
+        numbers.try_for_each(|&x| write_number(out, x))?;
+        out.write_all(b"\n")?;
+    }
+    write_faces(mesh, out)
 }
 
 /// The faces, with a line where another group begins.
@@ -93,109 +108,6 @@ fn write_faces(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
         out.write_all(b"\n")?;
     }
     Ok(())
-}
-
-type Located = (Option<usize>, ReadFault);
-
-/// Refuses what is no text at all.
-fn check_text(bytes: &[u8]) -> Result<(), Located> {
-    if bytes.is_empty() {
-        return Err((None, ReadFault::Empty));
-    }
-    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
-        return Err((None, ReadFault::NotUtf8));
-    }
-    match bytes.iter().position(|&b| b == 0) {
-        Some(offset) => Err((None, ReadFault::Binary { offset })),
-        None => Ok(()),
-    }
-}
-
-fn count_vertices(bytes: &[u8]) -> usize {
-    Statements::new(bytes).filter(|s| s.keyword() == b"v").count()
-}
-
-/// Lets `tobj` read the feed: one model whose first face is the anchor.
-fn load(feed: &mut Feed<'_>) -> Result<tobj::Mesh, Located> {
-    let no_materials = |_: &std::path::Path| Err(tobj::LoadError::OpenFileFailed);
-    let loaded = tobj::load_obj_buf(feed, &LoadOptions::default(), no_materials);
-    if let Some((line, fault)) = feed.fault.take() {
-        return Err((Some(line), fault));
-    }
-    match loaded {
-        Ok((models, _)) => Ok(models.into_iter().next().map(|m| m.mesh).unwrap_or_default()),
-        Err(_) => Err(refused_by_tobj(feed)),
-    }
-}
-
-/// The fault of the line that `tobj` was given last.
-fn refused_by_tobj(feed: &Feed<'_>) -> Located {
-    let Some(statement) = &feed.current else { return (None, ReadFault::Empty) };
-    let is_number = |w: &[u8]| std::str::from_utf8(w).is_ok_and(|w| w.parse::<f64>().is_ok());
-    let fault = match statement.words().skip(1).take(3).find(|w| !is_number(w)) {
-        Some(word) if statement.keyword() == b"v" => bad_number(word),
-        _ => ReadFault::Syntax {
-            reason: "a line that cannot be understood",
-            text: excerpt(&statement.text),
-            advice: "correct or remove the line",
-        },
-    };
-    (Some(statement.line), fault)
-}
-
-/// The mesh behind the anchor, after the checks that `tobj` does not make.
-fn build(bytes: &[u8], feed: &mut Feed<'_>, model: tobj::Mesh) -> Result<PolyMesh, Located> {
-    let vertices = model.positions.len() / 3;
-    if feed.groups.is_empty() {
-        let fault = if vertices == 0 { ReadFault::Empty } else { ReadFault::NoFaces { vertices } };
-        return Err((None, fault));
-    }
-    let out_of_bounds = |x: &f64| x.is_nan() || x.abs() > LARGEST_COORDINATE;
-    if let Some(at) = model.positions.iter().position(out_of_bounds) {
-        return Err(not_finite(bytes, at / 3, at % 3));
-    }
-    let points = model.positions.chunks_exact(3).map(|p| Point::new(p[0], p[1], p[2])).collect();
-    let offsets = offsets(&model.face_arities, feed.groups.len());
-    let mut corners = model.indices;
-    corners.drain(..vertices);
-    let mesh = PolyMesh::from_rows(points, offsets, corners).map_err(|e| (None, e.into()))?;
-    let (groups, names) = (std::mem::take(&mut feed.groups), std::mem::take(&mut feed.group_names));
-    Ok(mesh.with_groups(groups, names))
-}
-
-/// Where each face begins. Without arities everything is a triangle, the anchor in front too.
-fn offsets(arities: &[u32], faces: usize) -> Vec<u32> {
-    let mut end = 0_u32;
-    let ends = (1..=faces).map(|f| {
-        // More corners than fit are refused where the mesh is built.
-        end = end.wrapping_add(arities.get(f).map_or(3, |&d| d));
-        end
-    });
-    std::iter::once(0).chain(ends).collect()
-}
-
-/// Names the line of a coordinate; only errors pay for the search.
-fn not_finite(bytes: &[u8], vertex: usize, axis: usize) -> Located {
-    let statement = Statements::new(bytes).filter(|s| s.keyword() == b"v").nth(vertex);
-    let text = statement.as_ref().and_then(|s| s.words().nth(axis + 1)).map(excerpt);
-    let fault = ReadFault::NotFinite { vertex: vertex + 1, text: text.unwrap_or_default() };
-    (statement.map(|s| s.line), fault)
-}
-
-fn dropped_warning(feed: &Feed<'_>, file: &str) -> Vec<Warning> {
-    let first = feed.dropped.iter().map(|&(_, line)| line).min();
-    let what = feed.dropped.iter().map(|&(what, _)| what).collect();
-    let warning = |line| Warning::Dropped { file: file.to_owned(), what, line };
-    first.map(warning).into_iter().collect()
-}
-
-/// Writes a space and the shortest decimal that reads back as `x`.
-fn write_number(out: &mut dyn Write, x: f64) -> io::Result<()> {
-    if x == 0.0 || (1e-5..1e16).contains(&x.abs()) {
-        write!(out, " {x}")
-    } else {
-        write!(out, " {x:e}")
-    }
 }
 
 /// The line that opens a group. What would not read back as part of a name is replaced.

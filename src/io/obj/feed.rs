@@ -4,14 +4,17 @@
 //! takes `l 1 2 3` for a triangle, numbers vertices by first use, stumbles over continuations and
 //! trailing comments, and says neither the line of an error nor that an index is out of range
 //! before the end. So it gets `v` and `f` lines only, with three coordinates and bare indices,
-//! and before them an *anchor*: a face that uses every vertex in order. There is then one model,
-//! its vertices are in file order, and the line that fails is the one handed out last.
+//! and after them an *anchor*: a face that uses every vertex in order. There is then one model, its
+//! last face says where each vertex has gone, and the line that fails is the one handed out last.
 
 use std::collections::HashMap;
-use std::io::{self, BufRead, Read};
+use std::io::{self, BufRead, Read, Write};
 
-use super::statements::{Statement, Statements, is_blank};
-use crate::io::ReadFault;
+use super::statements::{Statement, Statements};
+use crate::io::fault::Located;
+use crate::io::soup::{Tally, vertex_at};
+use crate::io::text::{coordinates, excerpt, short_line};
+use crate::io::{Dropped, ReadFault};
 
 /// Keywords of the format that carry no polygon, and what they stand for.
 const IGNORED: &[(&str, &[&str])] = &[
@@ -47,44 +50,55 @@ const IGNORED: &[(&str, &[&str])] = &[
 /// Lines for `tobj`, and what it cannot be told: groups, losses, and the fault if there is one.
 pub(super) struct Feed<'a> {
     statements: Statements<'a>,
+    /// The statement behind the line that is being read.
+    pub(super) current: Statement,
     /// The canonical line that is being read, with its end.
     out: Vec<u8>,
     /// How much of it has been read.
     at: usize,
-    vertices: usize,
-    vertices_so_far: usize,
+    /// Whether the anchor has been made.
+    anchored: bool,
+    pub(super) tally: Tally<'a>,
+    ahead: Ahead,
     group_of_name: HashMap<String, u32>,
     current_name: String,
     /// Group of the faces that follow, once a face has used it.
     current_group: Option<u32>,
-    /// The statement behind the line that is being read.
-    pub(super) current: Option<Statement<'a>>,
     /// Group of each face.
     pub(super) groups: Vec<u32>,
     /// Names of the groups; the first is the empty one.
     pub(super) group_names: Vec<String>,
-    /// What was left out, in words, each once, with its first line.
-    pub(super) dropped: Vec<(&'static str, usize)>,
+    /// What was left out.
+    pub(super) dropped: Dropped,
     /// What our own checks found, and where.
-    pub(super) fault: Option<(usize, ReadFault)>,
+    pub(super) fault: Option<Located>,
+}
+
+/// Corners that name vertices which come later in the file, or not at all: each has a larger index
+/// than those before it, so that the first one out of range is among them.
+#[derive(Debug, Default)]
+struct Ahead {
+    largest: i64,
+    /// Index as it is written, its value, face and line.
+    corners: Vec<(String, i64, usize, usize)>,
 }
 
 impl<'a> Feed<'a> {
-    /// A feed of `bytes`, which have `vertices` vertex statements.
-    pub(super) fn new(bytes: &'a [u8], vertices: usize) -> Self {
+    pub(super) fn new(statements: Statements<'a>, tally: Tally<'a>) -> Self {
         Self {
-            statements: Statements::new(bytes),
-            out: anchor(vertices),
+            statements,
+            current: Statement::default(),
+            out: Vec::new(),
             at: 0,
-            vertices,
-            vertices_so_far: 0,
+            anchored: false,
+            tally,
+            ahead: Ahead::default(),
             group_of_name: HashMap::from([(String::new(), 0)]),
             current_name: String::new(),
             current_group: Some(0),
-            current: None,
             groups: Vec::new(),
             group_names: vec![String::new()],
-            dropped: Vec::new(),
+            dropped: Dropped::default(),
             fault: None,
         }
     }
@@ -93,20 +107,49 @@ impl<'a> Feed<'a> {
     fn advance(&mut self) -> io::Result<()> {
         self.out.clear();
         self.at = 0;
+        let mut statement = std::mem::take(&mut self.current);
+        let made = self.make_line(&mut statement);
+        self.current = statement;
+        made.map_err(|fault| {
+            self.fault = Some(fault);
+            io::Error::from(io::ErrorKind::InvalidData)
+        })
+    }
+
+    fn make_line(&mut self, statement: &mut Statement) -> Result<(), Located> {
         while self.out.is_empty() {
-            let Some(statement) = self.statements.next() else { return Ok(()) };
-            let taken = self.take(&statement);
-            let line = statement.line;
-            self.current = Some(statement);
-            if let Err(fault) = taken {
-                self.fault = Some((line, fault));
-                return Err(io::Error::from(io::ErrorKind::InvalidData));
+            let next = self.statements.advance(statement);
+            if !next.map_err(|fault| (Some(self.statements.line()), fault))? {
+                return self.anchor();
             }
+            self.take(statement).map_err(|fault| (Some(statement.line), fault))?;
         }
         Ok(())
     }
 
-    fn take(&mut self, statement: &Statement<'a>) -> Result<(), ReadFault> {
+    /// A face that uses every vertex in order, once all are known.
+    fn anchor(&mut self) -> Result<(), Located> {
+        let vertices = self.tally.vertices;
+        let ahead = std::mem::take(&mut self.ahead.corners);
+        if let Some((index, _, face, line)) =
+            ahead.into_iter().find(|&(_, value, ..)| vertex_at(value, 1, vertices).is_none())
+        {
+            return Err((Some(line), out_of_range(face, index, vertices)));
+        }
+        if std::mem::replace(&mut self.anchored, true) || vertices == 0 {
+            return Ok(());
+        }
+        self.out.reserve(8 * vertices);
+        self.out.push(b'f');
+        for v in 1..=vertices {
+            // A vector takes everything.
+            let _ = write!(self.out, " {v}");
+        }
+        self.out.push(b'\n');
+        Ok(())
+    }
+
+    fn take(&mut self, statement: &Statement) -> Result<(), ReadFault> {
         if statement.unfinished {
             return Err(ReadFault::Cut { text: excerpt(&statement.text) });
         }
@@ -118,33 +161,32 @@ impl<'a> Feed<'a> {
         }
     }
 
-    fn take_vertex(&mut self, statement: &Statement<'a>) -> Result<(), ReadFault> {
+    fn take_vertex(&mut self, statement: &Statement) -> Result<(), ReadFault> {
         let mut words = statement.words().skip(1);
+        let reason = "a vertex with fewer than three coordinates";
+        let short = || short_line(&statement.text, !statement.unterminated, reason);
+        let point = coordinates(&mut words)?.ok_or_else(short)?;
+        if words.next().is_some() {
+            self.dropped.note("vertex colours and weights", statement.line);
+        }
+        let word = |axis| statement.words().nth(1 + axis);
+        self.tally.vertex(point, |axis| word(axis).map(excerpt).unwrap_or_default())?;
         self.out.push(b'v');
-        for _ in 0..3 {
-            let Some(word) = words.next() else {
-                return Err(short_line(statement, "a vertex with fewer than three coordinates"));
-            };
-            if !word.is_ascii() {
-                return Err(bad_number(word));
-            }
+        for word in statement.words().skip(1).take(3) {
             self.out.push(b' ');
             self.out.extend_from_slice(word);
         }
         self.out.push(b'\n');
-        if words.next().is_some() {
-            self.note_dropped("vertex colours and weights", statement.line);
-        }
-        self.vertices_so_far += 1;
         Ok(())
     }
 
-    fn take_face(&mut self, statement: &Statement<'a>) -> Result<(), ReadFault> {
+    fn take_face(&mut self, statement: &Statement) -> Result<(), ReadFault> {
         self.out.push(b'f');
         let mut corners = 0;
         for word in statement.words().skip(1) {
             let index = vertex_index(word)?;
-            self.check_bounds(index)?;
+            self.check_index(index, statement.line)?;
+            self.tally.corner()?;
             self.out.push(b' ');
             self.out.extend_from_slice(index);
             corners += 1;
@@ -155,31 +197,33 @@ impl<'a> Feed<'a> {
         }
         let group = self.group();
         self.groups.push(group);
-        Ok(())
+        self.tally.face()
     }
 
     /// Whether the vertex exists. A positive index may name one that comes later in the file, a
     /// negative one counts back from here.
-    fn check_bounds(&self, index: &[u8]) -> Result<(), ReadFault> {
-        let text = std::str::from_utf8(index).unwrap_or_default();
+    fn check_index(&mut self, index: &[u8], line: usize) -> Result<(), ReadFault> {
+        let vertices = self.tally.vertices;
+        let (face, shown) = (self.tally.faces + 1, || excerpt(index));
         // The text is an integer; one that does not fit is out of range as well.
-        let (within, vertices) = match text.parse::<i64>() {
-            Ok(i) if i < 0 => {
-                (i.unsigned_abs() <= self.vertices_so_far as u64, self.vertices_so_far)
-            }
-            Ok(i) => (i > 0 && i.unsigned_abs() <= self.vertices as u64, self.vertices),
-            Err(_) => (false, self.vertices),
-        };
-        let fault = || ReadFault::IndexOutOfRange {
-            face: self.groups.len() + 1,
-            index: excerpt(index),
-            vertices,
-        };
-        if within { Ok(()) } else { Err(fault()) }
+        let value = std::str::from_utf8(index).ok().and_then(|text| text.parse::<i64>().ok());
+        let value = value.ok_or_else(|| out_of_range(face, shown(), vertices))?;
+        let first = if value < 0 { -(vertices as i64) } else { 1 };
+        if vertex_at(value, first, vertices).is_some() {
+            return Ok(());
+        }
+        if value <= 0 {
+            return Err(out_of_range(face, shown(), vertices));
+        }
+        if value > self.ahead.largest {
+            self.ahead.largest = value;
+            self.ahead.corners.push((shown(), value, face, line));
+        }
+        Ok(())
     }
 
     /// Later faces belong to the group or object of this name, whichever was named last.
-    fn take_group(&mut self, statement: &Statement<'a>) -> Result<(), ReadFault> {
+    fn take_group(&mut self, statement: &Statement) -> Result<(), ReadFault> {
         let text = std::str::from_utf8(&statement.text).map_err(|_| ReadFault::NotUtf8)?;
         let words: Vec<&str> = text.split_whitespace().skip(1).collect();
         self.current_name = words.join(" ");
@@ -201,10 +245,10 @@ impl<'a> Feed<'a> {
         group
     }
 
-    fn leave_out(&mut self, statement: &Statement<'a>, keyword: &[u8]) -> Result<(), ReadFault> {
+    fn leave_out(&mut self, statement: &Statement, keyword: &[u8]) -> Result<(), ReadFault> {
         let known = IGNORED.iter().find(|(_, words)| words.iter().any(|w| w.as_bytes() == keyword));
         if let Some((what, _)) = known {
-            self.note_dropped(what, statement.line);
+            self.dropped.note(what, statement.line);
             return Ok(());
         }
         Err(ReadFault::Syntax {
@@ -213,12 +257,6 @@ impl<'a> Feed<'a> {
             advice: "lines begin with `v`, `f` or another keyword of the format: correct or \
                      remove this one",
         })
-    }
-
-    fn note_dropped(&mut self, what: &'static str, line: usize) {
-        if self.dropped.iter().all(|&(known, _)| known != what) {
-            self.dropped.push((what, line));
-        }
     }
 }
 
@@ -243,19 +281,6 @@ impl BufRead for Feed<'_> {
     }
 }
 
-/// A face that uses every vertex in order, as a line; nothing without vertices.
-fn anchor(vertices: usize) -> Vec<u8> {
-    let mut line = Vec::with_capacity(8 * vertices);
-    if vertices > 0 {
-        line.push(b'f');
-        for v in 1..=vertices {
-            line.extend_from_slice(format!(" {v}").as_bytes());
-        }
-        line.push(b'\n');
-    }
-    line
-}
-
 /// The vertex of a corner `v`, `v/vt`, `v//vn` or `v/vt/vn`: an integer, not checked for range.
 fn vertex_index(word: &[u8]) -> Result<&[u8], ReadFault> {
     let mut parts = word.split(|&b| b == b'/');
@@ -273,36 +298,6 @@ fn vertex_index(word: &[u8]) -> Result<&[u8], ReadFault> {
     })
 }
 
-fn short_line(statement: &Statement<'_>, reason: &'static str) -> ReadFault {
-    let text = excerpt(&statement.text);
-    if statement.unterminated {
-        return ReadFault::Cut { text };
-    }
-    ReadFault::Syntax { reason, text, advice: "complete or remove the line" }
-}
-
-/// The fault of a coordinate that is no number.
-pub(super) fn bad_number(word: &[u8]) -> ReadFault {
-    let (reason, advice) = if word.contains(&b',') {
-        (
-            "a number with a comma",
-            "decimals are written with a point, as in `1.5`: convert the file",
-        )
-    } else {
-        ("a coordinate that is no number", "correct the line")
-    };
-    ReadFault::Syntax { reason, text: excerpt(word), advice }
-}
-
-/// The start of a piece of the file, fit to be shown.
-pub(super) fn excerpt(text: &[u8]) -> String {
-    const LONGEST: usize = 40;
-    let words: Vec<&[u8]> = text.split(|&b| is_blank(b)).filter(|w| !w.is_empty()).collect();
-    let shown = String::from_utf8_lossy(&words.join(&b' ')).into_owned();
-    let mut short: String =
-        shown.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).take(LONGEST).collect();
-    if shown.chars().nth(LONGEST).is_some() {
-        short.push('…');
-    }
-    short
+fn out_of_range(face: usize, index: String, vertices: usize) -> ReadFault {
+    ReadFault::IndexOutOfRange { face, index, first: 1, vertices }
 }

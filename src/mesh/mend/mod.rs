@@ -1,7 +1,7 @@
 //! Makes a mesh fit to be edited: mends what can be mended without a doubt, and counts it.
 //!
-//! Remeshers leave doublets, valence-1 vertices, bow-ties, edges with three faces, torn holes and
-//! mixed orientation. The surface is cut where it is no manifold, exactly as [`Topology`] sees
+//! Remeshers leave doublets, valence-1 vertices, bow-ties, edges with three faces, cracks, torn holes
+//! and mixed orientation. The surface is cut where it is no manifold, exactly as [`Topology`] sees
 //! it, and what was manifold keeps its Euler characteristic, components and boundary loops.
 //!
 //! Where two faces meet along a cut edge and are also connected around both its ends, the cut
@@ -11,6 +11,7 @@
 //!
 //! [`Topology`]: super::Topology
 
+mod cracks;
 mod cut;
 mod doublets;
 mod faces;
@@ -50,6 +51,8 @@ pub enum MendKind {
     DegenerateFace,
     /// A face with the vertices of an earlier one: dropped.
     DuplicateFace,
+    /// A vertex that hangs on the edge of a face which does not have it: welded into the face.
+    Crack,
     /// An edge with three or more faces: cut.
     NonManifoldEdge,
     /// A vertex where parts of the surface only touch: one copy for each part.
@@ -73,6 +76,11 @@ impl MendKind {
             Self::Spur => ("spur cut off", "spurs cut off", "face"),
             Self::DegenerateFace => ("degenerate face dropped", "degenerate faces dropped", "face"),
             Self::DuplicateFace => ("duplicate face dropped", "duplicate faces dropped", "face"),
+            Self::Crack => (
+                "crack closed: vertex welded into the face beside it",
+                "cracks closed: vertices welded into the faces beside them",
+                "vertex",
+            ),
             Self::NonManifoldEdge => (
                 "edge with more than two faces cut",
                 "edges with more than two faces cut",
@@ -98,6 +106,7 @@ impl MendKind {
             Self::Spur => "runs along an edge and back",
             Self::DegenerateFace => "does not have three corners, or uses a vertex twice",
             Self::DuplicateFace => "has the vertices of an earlier face",
+            Self::Crack => "hangs on the edge of a face that does not have it (a crack)",
             Self::NonManifoldEdge => "is on an edge with more than two faces",
             Self::BowTie => "joins parts of the surface that share no edge there",
             Self::FlippedFace => "is oriented against its neighbours",
@@ -198,7 +207,7 @@ pub fn mend(mesh: PolyMesh, policy: MendPolicy) -> Result<(PolyMesh, MendReport)
     draft.note_unused(&mut log)?;
     let mut checked = check(&draft.mesh);
     for _ in 0..ROUNDS {
-        if checked.is_ok() {
+        if checked.is_ok() && cracks::cracks(&draft.mesh).is_empty() {
             break;
         }
         draft.mend_once(&mut log)?;
@@ -235,6 +244,7 @@ impl Draft {
         if self.mesh.face_count() == 0 {
             return Err(MendError::NothingLeft);
         }
+        self.weld_cracks(log)?;
         self.cut(log)?;
         self.orient(log)?;
         self.remove_doublets(log)?;
