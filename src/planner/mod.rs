@@ -55,7 +55,7 @@ knobs! {
         /// Most faces of a patch in the last stage.
         patch_faces_last: u32 = 2000, in 0.0..=100_000.0, "faces";
         /// Largest share of the faces of the input in a patch.
-        patch_share: f64 = 0.25, in 0.0..=1.0, "1";
+        patch_share: f64 = 0.4, in 0.0..=1.0, "1";
         /// Fillings of a patch that are judged.
         fillings: u32 = 3, in 1.0..=20.0, "count";
         /// Largest |ln| of the number of faces over that of the input.
