@@ -5,7 +5,7 @@ use super::contact::Contact;
 use super::cost::CostOptions;
 use super::gate::{GateOptions, Setting, shape_of};
 use super::global::{self, Group, Link};
-use super::schedule::Schedule;
+use super::schedule::{Schedule, Slack};
 use super::worker::{Size, Stage, Task};
 use crate::mesh::MeshError;
 use crate::moves;
@@ -40,6 +40,8 @@ pub struct Automation<'a> {
     pub smooth: &'a SmoothOptions,
 }
 
+/// Degrees of deviation at a corner that edits may cause even where the input has less.
+const FAIR: f64 = 2.0;
 /// How many times its even share of the slack in distance an element may use up.
 const GREED: f64 = 16.0;
 
@@ -54,13 +56,20 @@ impl Automation<'_> {
         let mut contact = Contact::new(self.reference, faces);
         contact.attach(mesh, self.reference)?;
         let floor = contact.probe_count() as f64 * self.budget.rms.powi(2);
-        let allowed = self.gate.rms.powi(2) * contact.squared_distances().max(floor);
+        let allowed = Slack {
+            distance: self.gate.rms.powi(2) * contact.squared_distances().max(floor),
+            angles: self.gate.angles * angles(mesh).max(FAIR * corners(mesh)),
+        };
+        let left = |mesh: &QuadMesh, contact: &Contact| Slack {
+            distance: allowed.distance - contact.squared_distances(),
+            angles: allowed.angles - angles(mesh),
+        };
         self.smooth_between(mesh, watch)?;
         for i in (0..self.plan.stages).take_while(|_| !watch.cancelled()) {
             watch.stage(i, self.plan.stages);
             contact.attach(mesh, self.reference)?;
             let (lambda, faces) = (self.plan.lambda(i), self.patch_faces(i));
-            schedule.restart(allowed - contact.squared_distances());
+            schedule.restart(left(mesh, &contact));
             let refills = (Stage::Refills { faces }, lambda);
             for step in [(Stage::Moves, lambda), refills] {
                 self.rounds((mesh, &mut contact), &mut schedule, step, watch);
@@ -81,9 +90,11 @@ impl Automation<'_> {
         }
         if !watch.cancelled() {
             contact.attach(mesh, self.reference)?;
-            schedule.restart(allowed - contact.squared_distances());
-            let types = (Stage::Types, self.plan.lambda_types);
-            self.rounds((mesh, &mut contact), &mut schedule, types, watch);
+            schedule.restart(left(mesh, &contact));
+            for stage in [Stage::Types, Stage::Folds] {
+                let step = (stage, self.plan.lambda_types);
+                self.rounds((mesh, &mut contact), &mut schedule, step, watch);
+            }
         }
         self.release_pins(mesh);
         self.smooth(mesh, self.smooth, watch)?;
@@ -125,7 +136,8 @@ impl Automation<'_> {
             relax: self.relax,
             options: self.gate,
             distance: self.gate.distance * self.hausdorff(),
-            growth: GREED * schedule.slack().max(0.0) / mesh.total_irregularity().max(1) as f64,
+            growth: GREED * schedule.slack().distance.max(0.0)
+                / mesh.total_irregularity().max(1) as f64,
             cover: (self.gate.cover_edges * self.mean_edge).min(self.hausdorff()),
         };
         let rounds = match stage {
@@ -185,6 +197,17 @@ impl Automation<'_> {
         mesh.commit();
         Ok(())
     }
+}
+
+/// Number of corners of all faces.
+fn corners(mesh: &QuadMesh) -> f64 {
+    let faces = mesh.vertices().filter(|&f| mesh.is_face(f) && !mesh.is_ghost(f));
+    faces.map(|f| f64::from(mesh.valence(f))).sum()
+}
+
+/// Σ |angle − ideal| over all corners, degrees.
+fn angles(mesh: &QuadMesh) -> f64 {
+    shape_of(mesh, mesh.vertices().filter(|&f| mesh.is_face(f) && !mesh.is_ghost(f))).angles()
 }
 
 /// The global plan for the mesh as it is, of what has not been tried; by first member.

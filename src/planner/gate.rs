@@ -39,6 +39,9 @@ knobs! {
         own_hausdorff_edges: f64 = 0.2, in 0.0..=10.0, "mean edges";
         /// Root mean square distance allowed where the mesh is its own reference.
         own_rms_edges: f64 = 0.03, in 0.0..=10.0, "mean edges";
+        /// Mean deviation of corner angles that all edits together may cause, as a multiple of the
+        /// input's, or of 2 degrees if that is more.
+        angles: f64 = 0.75, in 0.0..=100.0, "input deviations";
         /// Largest |ln| of the number of faces after over before a refill.
         area: f64 = 0.3, in 0.0..=3.0, "ln";
     }
@@ -71,6 +74,8 @@ pub struct Passed {
     pub angle_growth: f64,
     /// How well shaped the region is.
     pub shape: Shape,
+    /// How many quads are turned over no more.
+    pub unfolded: u32,
     /// Growth of Σ squared distance of the probes of the region; may be negative.
     pub distance_growth: f64,
     /// Where the free vertices of the region are now, and a triangle of the reference there.
@@ -203,6 +208,7 @@ impl Gate {
         Ok(Passed {
             angle_growth: after.angles - before.angles,
             shape: after,
+            unfolded: before.inverted - after.inverted,
             distance_growth: growth,
             moved,
         })
@@ -370,10 +376,22 @@ impl Default for Shape {
 }
 
 impl Shape {
+    /// Σ |angle − ideal| over corners, degrees.
+    #[must_use]
+    pub fn angles(&self) -> f64 {
+        self.angles
+    }
+
     /// Least scaled Jacobian of the quads.
     #[must_use]
     pub fn jacobian(&self) -> f64 {
         self.jacobian
+    }
+
+    /// Whether a quad is turned over.
+    #[must_use]
+    pub fn is_folded(&self) -> bool {
+        self.inverted > 0
     }
 
     /// Whether there is nothing worse among the quads than in `other`, give or take a little.

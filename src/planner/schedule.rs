@@ -65,6 +65,15 @@ struct Failed {
     needs: f64,
 }
 
+/// What all edits together may still use up.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Slack {
+    /// Growth of Σ squared distance of the probes, in squared units of the file.
+    pub distance: f64,
+    /// Growth of Σ |angle − ideal| over all corners, degrees.
+    pub angles: f64,
+}
+
 /// The state of planning over all rounds.
 #[derive(Debug)]
 pub struct Schedule {
@@ -79,8 +88,7 @@ pub struct Schedule {
     /// Refills that failed, and the exchange rate at which they might have passed.
     hopeless: FxHashMap<RefillKey, f64>,
     spacing: Spacing,
-    /// What edits may still add to Σ squared distance of the probes.
-    slack: f64,
+    slack: Slack,
     size: Size,
     /// The edits made so far.
     pub edits: Vec<EditRecord>,
@@ -102,23 +110,23 @@ impl Schedule {
             round: 0,
             hopeless: FxHashMap::default(),
             spacing: Spacing::default(),
-            slack: 0.0,
+            slack: Slack::default(),
             size,
             edits: Vec::new(),
             rounds: Vec::new(),
         }
     }
 
-    /// Lets every element be tried again: the rules have changed. From now on edits may add
-    /// `slack` to Σ squared distance of the probes.
-    pub fn restart(&mut self, slack: f64) {
+    /// Lets every element be tried again: the rules have changed. From now on edits may use up
+    /// `slack`.
+    pub fn restart(&mut self, slack: Slack) {
         self.failed.clear();
         self.slack = slack;
     }
 
-    /// What edits may still add to Σ squared distance of the probes.
+    /// What edits may still use up.
     #[must_use]
-    pub fn slack(&self) -> f64 {
+    pub fn slack(&self) -> Slack {
         self.slack
     }
 
@@ -173,6 +181,14 @@ impl Schedule {
         };
         if let Stage::Groups { .. } = task.stage {
             return task.groups.keys().copied().collect();
+        }
+        if task.stage == Stage::Folds {
+            let is_folded = |f: &Vertex| {
+                mesh.is_face(*f)
+                    && !mesh.is_ghost(*f)
+                    && shape_of(mesh, std::iter::once(*f)).is_folded()
+            };
+            return mesh.vertices().filter(fresh).filter(is_folded).collect();
         }
         let irregular = mesh.vertices().filter(|&v| mesh.irregularity(v) > 0);
         let fresh: Vec<Vertex> = irregular.filter(fresh).collect();
@@ -266,14 +282,16 @@ impl Schedule {
         made
     }
 
-    /// Whether the mesh stays within its limits of size and distance.
+    /// Whether the mesh stays within its limits of size, distance and angles.
     fn affordable(&self, proposal: &Proposal) -> bool {
-        let near = proposal.distance_growth <= self.slack.max(0.0);
-        near && self.size.allows(proposal.faces_added)
+        let near = proposal.distance_growth <= self.slack.distance.max(0.0);
+        let square = proposal.angle_growth <= self.slack.angles.max(0.0);
+        near && square && self.size.allows(proposal.faces_added)
     }
 
     fn record(&mut self, proposal: Proposal, gain: i32, planned: u32) {
-        self.slack -= proposal.distance_growth;
+        self.slack.distance -= proposal.distance_growth;
+        self.slack.angles -= proposal.angle_growth;
         self.size.now += proposal.faces_added;
         for &v in proposal.core.iter().filter(|&&v| v < planned) {
             self.changed[v as usize] = self.round;

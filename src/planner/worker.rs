@@ -31,6 +31,8 @@ pub struct Proposal {
     pub angle_growth: f64,
     /// How well shaped its surroundings are.
     pub shape: Shape,
+    /// How many quads are turned over no more.
+    pub unfolded: u32,
     /// Growth of Σ squared distance of the probes, in squared units of the file.
     pub distance_growth: f64,
     /// Change of the number of faces.
@@ -106,6 +108,8 @@ pub enum Stage {
     Moves,
     /// T-junctions turned into dual ones: a triangle is easier on the eye than a hanging vertex.
     Types,
+    /// Operations at quads that are turned over, after which they are not.
+    Folds,
     /// Refills of patches of at most so many faces.
     Refills {
         /// Most faces.
@@ -181,7 +185,7 @@ pub struct Worker {
 pub(super) const FORGIVING: f64 = 1.25;
 /// Irregularity that the end of a T-junction may cost where there is no other way.
 pub(super) const MOST_LOSS: u32 = 2;
-/// Ways to resolve a T-junction that are judged.
+/// Ways to resolve a T-junction, or to turn a quad right, that are judged.
 const MOST_TYPE_CHANGES: usize = 24;
 
 /// What is known while planning.
@@ -212,6 +216,7 @@ impl Worker {
         match context.task.stage {
             Stage::Moves => self.propose_move(seed, context, &mut outcome),
             Stage::Types => self.propose_type_change(seed, context, &mut outcome),
+            Stage::Folds => self.propose_unfolding(seed, context, &mut outcome),
             Stage::Refills { faces } => {
                 self.propose_refill((seed, faces, 1), context, &mut outcome);
             }
@@ -247,30 +252,51 @@ impl Worker {
         }
     }
 
-    /// The one or two operations at a face with a T-junction after which there are fewer, at the
-    /// same E or else a little more, that cost the least.
+    /// The one or two operations at a face with a T-junction after which there are fewer.
     fn propose_type_change(&mut self, seed: Vertex, context: Context, outcome: &mut Outcome) {
         if !self.mesh.is_face(seed) || t_junctions(&self.mesh, &[seed]) == 0 {
             return;
         }
-        let mut near = vec![seed];
-        near.extend(self.mesh.neighbours(seed).filter(|&v| self.mesh.valence(v) == 3));
+        let hangs = |&v: &Vertex| self.mesh.valence(v) == 3;
+        let near: Vec<Vertex> =
+            std::iter::once(seed).chain(self.mesh.neighbours(seed).filter(hangs)).collect();
+        let resolves = |worker: &mut Self, ops: &[Op]| worker.resolves_t_junction(ops);
+        self.propose_best(seed, &near, (resolves, |_| true), context, outcome);
+    }
+
+    /// The one or two operations at a quad that is turned over after which it is not.
+    fn propose_unfolding(&mut self, seed: Vertex, context: Context, outcome: &mut Outcome) {
+        let near: Vec<Vertex> = std::iter::once(seed).chain(self.mesh.neighbours(seed)).collect();
+        let all = |_: &mut Self, _: &[Op]| true;
+        self.propose_best(seed, &near, (all, |p| p.unfolded > 0), context, outcome);
+    }
+
+    /// The operations that cost the least angle, at the same E or else a little more, of those that
+    /// are `wanted` and `work`.
+    fn propose_best(
+        &mut self,
+        seed: Vertex,
+        near: &[Vertex],
+        (wanted, works): (impl Fn(&mut Self, &[Op]) -> bool, impl Fn(&Proposal) -> bool),
+        context: Context,
+        outcome: &mut Outcome,
+    ) {
         let depths = 1..=context.task.plan.depth;
         for (most, depth) in
             [0, MOST_LOSS].into_iter().flat_map(|most| depths.clone().map(move |d| (most, d)))
         {
             let mut ways = Vec::new();
-            for &v in &near {
+            for &v in near {
                 ways.extend(local::sequences(&mut self.mesh, v, depth, most as i32));
             }
-            ways.retain(|(_, ops)| self.resolves_t_junction(ops));
+            ways.retain(|(_, ops)| wanted(self, ops));
             for (_, ops) in ways.into_iter().take(MOST_TYPE_CHANGES) {
                 let edit = Edit::TypeChange { ops };
                 let sweeps = context.task.gate.options.sweeps;
                 let found = self.attempt(seed, (0, 1.0, edit), sweeps, context, outcome).ok();
                 let best = outcome.proposal.as_ref().map_or(f64::INFINITY, |p| p.angle_growth);
                 outcome.proposal =
-                    found.filter(|p| p.angle_growth < best).or(outcome.proposal.take());
+                    found.filter(|p| works(p) && p.angle_growth < best).or(outcome.proposal.take());
             }
             if outcome.proposal.is_some() {
                 return;
@@ -425,13 +451,14 @@ impl Worker {
         let faces_added = faces_after - count_faces(&self.mesh, &touched);
         let in_size = context.size.allows(faces_added);
         match judged.and_then(|passed| in_size.then_some(passed).ok_or(Failure::Size.into())) {
-            Ok(Passed { angle_growth, shape, distance_growth, moved }) => Ok(Proposal {
+            Ok(Passed { angle_growth, shape, unfolded, distance_growth, moved }) => Ok(Proposal {
                 edit,
                 seed,
                 gain,
                 cost,
                 angle_growth,
                 shape,
+                unfolded,
                 distance_growth,
                 faces_added,
                 touched,

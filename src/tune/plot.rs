@@ -213,7 +213,7 @@ mod tests {
     fn ticks_are_round_and_inside() {
         let axis = |low, high, log| Axis::from_to("", (low, high), log).ticks();
         assert_eq!(axis(0.0, 8.0, false), [0.0, 2.0, 4.0, 6.0, 8.0]);
-        assert_eq!(axis(0.02, 2.0, true), [0.03, 0.1, 0.3, 1.0].map(f64::from));
+        assert_eq!(axis(0.02, 2.0, true), [0.1, 1.0]);
         assert_eq!(axis(0.9, 1.0, true).len(), 3);
         assert_eq!(axis(1.0, 1e6, true).len(), 7);
     }
