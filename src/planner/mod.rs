@@ -28,7 +28,7 @@ knobs! {
         /// Exchange rate of the first stage.
         lambda_first: f64 = 80.0, in 0.0..=100_000.0, "degree-corners per element";
         /// Exchange rate of the last stage.
-        lambda_last: f64 = 1200.0, in 0.0..=100_000.0, "degree-corners per element";
+        lambda_last: f64 = 2000.0, in 0.0..=100_000.0, "degree-corners per element";
         /// What a T-junction may cost to be turned into a dual one (a triangle and a vertex of five
         /// edges) at the end.
         lambda_types: f64 = 150.0, in 0.0..=100_000.0, "degree-corners";
@@ -55,7 +55,7 @@ knobs! {
         /// Most faces of a patch in the last stage.
         patch_faces_last: u32 = 2000, in 0.0..=100_000.0, "faces";
         /// Largest share of the faces of the input in a patch.
-        patch_share: f64 = 0.4, in 0.0..=1.0, "1";
+        patch_share: f64 = 0.25, in 0.0..=1.0, "1";
         /// Fillings of a patch that are judged.
         fillings: u32 = 3, in 1.0..=20.0, "count";
         /// Largest |ln| of the number of faces over that of the input.
