@@ -60,8 +60,9 @@ const INVERTED: &str = "inverted quads";
 const MOST_T_JUNCTIONS: f64 = 0.04;
 /// How much larger mean angle deviation and distances to the reference may get.
 const GROWTH: f64 = 1.1;
-/// Distances are sampled; on a flat plate all there is to see is slivers at its round holes.
-const NOISE_REL: f64 = 1e-6;
+/// Distances are sampled; on a flat plate all there is to see is slivers at its round holes, and
+/// its largest distance is anything from 0.00029 to 0.00037 with other samples.
+const NOISE_REL: [f64; 2] = [1e-6, 5e-5];
 
 /// A mesh of the data folder and its reference surface.
 struct Input {
@@ -118,15 +119,16 @@ fn judge_numbers(before: &Summary, after: &Summary, faults: &mut Faults) {
     faults.at_most("E relative to the input", share, most);
     let most = (MOST_T_JUNCTIONS * before.t_junctions as f64).round().max(1.0);
     faults.at_most(T_JUNCTIONS, after.t_junctions as f64, most);
-    for (what, of) in [
-        ("mean angle deviation", (|s: &Summary| s.fig10_mean) as fn(&Summary) -> Option<f64>),
-        ("Hausdorff distance", |s| s.hausdorff),
-        ("RMS distance", |s| s.rms),
+    let [mean, largest] = NOISE_REL;
+    for (what, of, noise) in [
+        ("mean angle deviation", (|s: &Summary| s.fig10_mean) as fn(&Summary) -> Option<f64>, 0.0),
+        ("Hausdorff distance", |s| s.hausdorff, largest),
+        ("RMS distance", |s| s.rms, mean),
     ] {
         let (Some(before), Some(after)) = (of(before), of(after)) else {
             panic!("{what} is measured");
         };
-        faults.at_most(what, after, GROWTH * before + NOISE_REL);
+        faults.at_most(what, after, GROWTH * before + noise);
     }
 }
 

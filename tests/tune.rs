@@ -272,9 +272,6 @@ fn the_preset_t_junctions_takes_nothing_else_away() {
     let (from, to) = (before.irregular_elements, after.irregular_elements);
     assert!(to.abs_diff(from) * 10 <= from, "E {from}, then {to}");
     assert!(after.faces.abs_diff(before.faces) * 50 <= before.faces, "{}", after.faces);
-    // Smoothing may use the little that a budget met exactly leaves.
-    let hardly_more =
-        |after: Option<f64>, before: Option<f64>| after.unwrap() <= 1.005 * before.unwrap();
-    assert!(hardly_more(after.rms, before.rms), "{after:?}");
-    assert!(hardly_more(after.hausdorff, before.hausdorff), "{after:?}");
+    assert!(after.rms.unwrap() <= before.rms.unwrap(), "{after:?}");
+    assert!(after.hausdorff.unwrap() <= 1.1 * before.hausdorff.unwrap(), "{after:?}");
 }

@@ -88,16 +88,31 @@ impl Automation<'_> {
                 self.smooth_between(mesh, watch)?;
             }
         }
+        // A T-junction or a fold less is worth its angles, whatever is left of them.
+        let last = |mesh: &QuadMesh, contact: &Contact| Slack {
+            angles: f64::INFINITY,
+            ..left(mesh, contact)
+        };
         if !watch.cancelled() {
             contact.attach(mesh, self.reference)?;
-            schedule.restart(left(mesh, &contact));
-            for stage in [Stage::Types, Stage::Folds] {
-                let step = (stage, self.plan.lambda_types);
-                self.rounds((mesh, &mut contact), &mut schedule, step, watch);
-            }
+            schedule.restart(last(mesh, &contact));
+            let types = (Stage::Types, self.plan.lambda_types);
+            self.rounds((mesh, &mut contact), &mut schedule, types, watch);
         }
         self.release_pins(mesh);
         self.smooth(mesh, self.smooth, watch)?;
+        let is_folded =
+            |f: Vertex| mesh.is_face(f) && shape_of(mesh, std::iter::once(f)).is_folded();
+        if !watch.cancelled() && mesh.vertices().any(is_folded) {
+            contact.attach(mesh, self.reference)?;
+            schedule.restart(last(mesh, &contact));
+            let made = schedule.edits.len();
+            let folds = (Stage::Folds, self.plan.lambda_types);
+            self.rounds((mesh, &mut contact), &mut schedule, folds, watch);
+            if schedule.edits.len() > made {
+                self.smooth(mesh, self.smooth, watch)?;
+            }
+        }
         Ok(schedule)
     }
 
