@@ -5,7 +5,7 @@ use super::contact::Contact;
 use super::cost::CostOptions;
 use super::gate::{GateOptions, Setting, shape_of};
 use super::global::{self, Group, Link};
-use super::schedule::{Schedule, Slack};
+use super::schedule::{Schedule, Slack, is_poor};
 use super::worker::{Size, Stage, Task};
 use crate::mesh::MeshError;
 use crate::moves;
@@ -88,32 +88,36 @@ impl Automation<'_> {
                 self.smooth_between(mesh, watch)?;
             }
         }
-        // A T-junction or a fold less is worth its angles, whatever is left of them.
-        let last = |mesh: &QuadMesh, contact: &Contact| Slack {
-            angles: f64::INFINITY,
-            ..left(mesh, contact)
-        };
-        if !watch.cancelled() {
-            contact.attach(mesh, self.reference)?;
-            schedule.restart(last(mesh, &contact));
-            let types = (Stage::Types, self.plan.lambda_types);
-            self.rounds((mesh, &mut contact), &mut schedule, types, watch);
-        }
+        let types = [Stage::Types];
+        self.last_rounds((mesh, &mut contact), &mut schedule, (&types, left), watch)?;
         self.release_pins(mesh);
         self.smooth(mesh, self.smooth, watch)?;
-        let is_folded =
-            |f: Vertex| mesh.is_face(f) && shape_of(mesh, std::iter::once(f)).is_folded();
-        if !watch.cancelled() && mesh.vertices().any(is_folded) {
-            contact.attach(mesh, self.reference)?;
-            schedule.restart(last(mesh, &contact));
-            let made = schedule.edits.len();
-            let folds = (Stage::Folds, self.plan.lambda_types);
-            self.rounds((mesh, &mut contact), &mut schedule, folds, watch);
-            if schedule.edits.len() > made {
-                self.smooth(mesh, self.smooth, watch)?;
-            }
+        let rest = [Stage::Types, Stage::Poor];
+        if self.last_rounds((mesh, &mut contact), &mut schedule, (&rest, left), watch)? {
+            self.smooth(mesh, self.smooth, watch)?;
         }
         Ok(schedule)
+    }
+
+    /// Rounds of the kinds that come last; whether there were edits. What they do is worth its
+    /// angles, whatever is left of them.
+    fn last_rounds(
+        &self,
+        (mesh, contact): (&mut QuadMesh, &mut Contact),
+        schedule: &mut Schedule,
+        (stages, slack): (&[Stage], impl Fn(&QuadMesh, &Contact) -> Slack),
+        watch: &dyn Watch,
+    ) -> Result<bool, MeshError> {
+        if watch.cancelled() {
+            return Ok(false);
+        }
+        let before = schedule.edits.len();
+        contact.attach(mesh, self.reference)?;
+        schedule.restart(Slack { angles: f64::INFINITY, ..slack(mesh, contact) });
+        for &stage in stages {
+            self.rounds((mesh, contact), schedule, (stage, self.plan.lambda_types), watch);
+        }
+        Ok(schedule.edits.len() > before)
     }
 
     /// Most faces of a patch in stage `i`: no patch is most of the mesh.
@@ -124,9 +128,7 @@ impl Automation<'_> {
 
     /// Lets the pins of quads that are still poor move: a crease is not worth a folded quad.
     fn release_pins(&self, mesh: &mut QuadMesh) {
-        let is_poor = |f: &Vertex| {
-            mesh.is_face(*f) && shape_of(mesh, [*f].into_iter()).jacobian() < self.gate.min_jacobian
-        };
+        let is_poor = |&f: &Vertex| is_poor(mesh, f, self.gate.min_jacobian);
         let poor: Vec<Vertex> = mesh.vertices().filter(is_poor).collect();
         for f in poor {
             let pins: Vec<Vertex> = mesh.neighbours(f).filter(|&v| mesh.is_pin(v)).collect();

@@ -74,8 +74,8 @@ pub struct Passed {
     pub angle_growth: f64,
     /// How well shaped the region is.
     pub shape: Shape,
-    /// How many quads are turned over no more.
-    pub unfolded: u32,
+    /// By how much less the quads of the region lack to a fair scaled Jacobian, in all.
+    pub mended: f64,
     /// Growth of Σ squared distance of the probes of the region; may be negative.
     pub distance_growth: f64,
     /// Where the free vertices of the region are now, and a triangle of the reference there.
@@ -208,7 +208,7 @@ impl Gate {
         Ok(Passed {
             angle_growth: after.angles - before.angles,
             shape: after,
-            unfolded: before.inverted - after.inverted,
+            mended: before.deficit - after.deficit,
             distance_growth: growth,
             moved,
         })
@@ -386,12 +386,6 @@ impl Shape {
     #[must_use]
     pub fn jacobian(&self) -> f64 {
         self.jacobian
-    }
-
-    /// Whether a quad is turned over.
-    #[must_use]
-    pub fn is_folded(&self) -> bool {
-        self.inverted > 0
     }
 
     /// Whether there is nothing worse among the quads than in `other`, give or take a little.

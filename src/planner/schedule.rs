@@ -182,13 +182,9 @@ impl Schedule {
         if let Stage::Groups { .. } = task.stage {
             return task.groups.keys().copied().collect();
         }
-        if task.stage == Stage::Folds {
-            let is_folded = |f: &Vertex| {
-                mesh.is_face(*f)
-                    && !mesh.is_ghost(*f)
-                    && shape_of(mesh, std::iter::once(*f)).is_folded()
-            };
-            return mesh.vertices().filter(fresh).filter(is_folded).collect();
+        if task.stage == Stage::Poor {
+            let is_poor = |&f: &Vertex| is_poor(mesh, f, task.gate.options.min_jacobian);
+            return mesh.vertices().filter(fresh).filter(is_poor).collect();
         }
         let irregular = mesh.vertices().filter(|&v| mesh.irregularity(v) > 0);
         let fresh: Vec<Vertex> = irregular.filter(fresh).collect();
@@ -306,6 +302,12 @@ impl Schedule {
             edit: proposal.edit,
         });
     }
+}
+
+/// Whether `f` is a quad of a scaled Jacobian below `least`.
+pub(super) fn is_poor(mesh: &QuadMesh, f: Vertex, least: f64) -> bool {
+    let is_face = mesh.is_face(f) && !mesh.is_ghost(f);
+    is_face && shape_of(mesh, std::iter::once(f)).jacobian() < least
 }
 
 /// Makes the edit if it still does what was planned; how many irregular elements fewer there are.

@@ -31,8 +31,8 @@ pub struct Proposal {
     pub angle_growth: f64,
     /// How well shaped its surroundings are.
     pub shape: Shape,
-    /// How many quads are turned over no more.
-    pub unfolded: u32,
+    /// By how much less its quads lack to a fair scaled Jacobian, in all.
+    pub mended: f64,
     /// Growth of Σ squared distance of the probes, in squared units of the file.
     pub distance_growth: f64,
     /// Change of the number of faces.
@@ -108,8 +108,8 @@ pub enum Stage {
     Moves,
     /// T-junctions turned into dual ones: a triangle is easier on the eye than a hanging vertex.
     Types,
-    /// Operations at quads that are turned over, after which they are not.
-    Folds,
+    /// Operations at quads that are folded or nearly so, after which they are better.
+    Poor,
     /// Refills of patches of at most so many faces.
     Refills {
         /// Most faces.
@@ -185,6 +185,8 @@ pub struct Worker {
 pub(super) const FORGIVING: f64 = 1.25;
 /// Irregularity that the end of a T-junction may cost where there is no other way.
 pub(super) const MOST_LOSS: u32 = 2;
+/// How much better poor quads must become, in scaled Jacobian, for the elements that it costs.
+const WORTH_MENDING: f64 = 0.1;
 /// Ways to resolve a T-junction, or to turn a quad right, that are judged.
 const MOST_TYPE_CHANGES: usize = 24;
 
@@ -216,7 +218,7 @@ impl Worker {
         match context.task.stage {
             Stage::Moves => self.propose_move(seed, context, &mut outcome),
             Stage::Types => self.propose_type_change(seed, context, &mut outcome),
-            Stage::Folds => self.propose_unfolding(seed, context, &mut outcome),
+            Stage::Poor => self.propose_mending(seed, context, &mut outcome),
             Stage::Refills { faces } => {
                 self.propose_refill((seed, faces, 1), context, &mut outcome);
             }
@@ -264,11 +266,11 @@ impl Worker {
         self.propose_best(seed, &near, (resolves, |_| true), context, outcome);
     }
 
-    /// The one or two operations at a quad that is turned over after which it is not.
-    fn propose_unfolding(&mut self, seed: Vertex, context: Context, outcome: &mut Outcome) {
+    /// The one or two operations at a poor quad after which there is a better one.
+    fn propose_mending(&mut self, seed: Vertex, context: Context, outcome: &mut Outcome) {
         let near: Vec<Vertex> = std::iter::once(seed).chain(self.mesh.neighbours(seed)).collect();
         let all = |_: &mut Self, _: &[Op]| true;
-        self.propose_best(seed, &near, (all, |p| p.unfolded > 0), context, outcome);
+        self.propose_best(seed, &near, (all, |p| p.mended > WORTH_MENDING), context, outcome);
     }
 
     /// The operations that cost the least angle, at the same E or else a little more, of those that
@@ -451,14 +453,14 @@ impl Worker {
         let faces_added = faces_after - count_faces(&self.mesh, &touched);
         let in_size = context.size.allows(faces_added);
         match judged.and_then(|passed| in_size.then_some(passed).ok_or(Failure::Size.into())) {
-            Ok(Passed { angle_growth, shape, unfolded, distance_growth, moved }) => Ok(Proposal {
+            Ok(Passed { angle_growth, shape, mended, distance_growth, moved }) => Ok(Proposal {
                 edit,
                 seed,
                 gain,
                 cost,
                 angle_growth,
                 shape,
-                unfolded,
+                mended,
                 distance_growth,
                 faces_added,
                 touched,
