@@ -164,13 +164,16 @@ impl Automation<'_> {
         };
         let mut tried = BTreeSet::new();
         for _ in 0..rounds {
+            if watch.cancelled() {
+                return;
+            }
             let groups = match stage {
                 Stage::Groups { .. } => groups(mesh, &mut tried),
                 _ => BTreeMap::new(),
             };
             let groups = &groups;
             let task = Task { stage, lambda, groups, plan: self.plan, costs: self.costs, gate };
-            if watch.cancelled() || !schedule.round((mesh, contact), &task, watch) {
+            if !schedule.round((mesh, contact), &task, watch) {
                 return;
             }
         }
@@ -216,15 +219,19 @@ impl Automation<'_> {
     }
 }
 
+/// The faces of the polygon mesh.
+fn faces(mesh: &QuadMesh) -> impl Iterator<Item = Vertex> + '_ {
+    mesh.vertices().filter(|&f| mesh.is_face(f) && !mesh.is_ghost(f))
+}
+
 /// Number of corners of all faces.
 fn corners(mesh: &QuadMesh) -> f64 {
-    let faces = mesh.vertices().filter(|&f| mesh.is_face(f) && !mesh.is_ghost(f));
-    faces.map(|f| f64::from(mesh.valence(f))).sum()
+    faces(mesh).map(|f| f64::from(mesh.valence(f))).sum()
 }
 
 /// Σ |angle − ideal| over all corners, degrees.
 fn angles(mesh: &QuadMesh) -> f64 {
-    shape_of(mesh, mesh.vertices().filter(|&f| mesh.is_face(f) && !mesh.is_ghost(f))).angles()
+    shape_of(mesh, faces(mesh)).angles()
 }
 
 /// The global plan for the mesh as it is, of what has not been tried; by first member.
