@@ -44,6 +44,9 @@ pub struct Grower {
     stamp: Vec<u32>,
     epoch: u32,
     faces: Vec<Vertex>,
+    /// The walk along a rim that last met a vertex.
+    met: Vec<u32>,
+    walk: u32,
 }
 
 /// Why a region cannot be refilled as it is.
@@ -63,8 +66,15 @@ impl Grower {
     /// Begins a new region.
     pub fn start(&mut self, mesh: &QuadMesh) {
         self.stamp.resize(mesh.vertex_ids() as usize, 0);
+        self.met.resize(mesh.vertex_ids() as usize, 0);
         self.epoch += 1;
         self.faces.clear();
+    }
+
+    /// Number of faces taken in.
+    #[must_use]
+    pub fn face_count(&self) -> usize {
+        self.faces.len()
     }
 
     fn holds(&self, face: Vertex) -> bool {
@@ -106,12 +116,14 @@ impl Grower {
 
     /// Fills dents until the rim is convex; the region, if it is a disk of at most `most` faces.
     pub fn convex(&mut self, mesh: &QuadMesh, most: usize) -> Result<Region, Stop> {
+        let (mut rim, mut within) = (Vec::new(), 0);
         loop {
-            if self.faces.len() > most {
+            let before = self.faces.len();
+            if before > most {
                 return Err(Stop::TooLarge);
             }
-            let before = self.faces.len();
-            let rim = self.rim(mesh)?;
+            rim = self.rim(mesh, (&rim, within))?;
+            within = before;
             for i in 0..rim.len() {
                 let sector = self.sector_inside(mesh, rim[(i + rim.len() - 1) % rim.len()], rim[i]);
                 if sector.wanted > 2 && sector.outside > 0 {
@@ -126,7 +138,7 @@ impl Grower {
 
     /// The region of just the faces taken in, if they are a disk; its rim may have dents.
     pub fn disk(&mut self, mesh: &QuadMesh) -> Result<Region, Stop> {
-        let rim = self.rim(mesh)?;
+        let rim = self.rim(mesh, (&[], 0))?;
         self.region(mesh, rim)
     }
 
@@ -134,10 +146,15 @@ impl Grower {
         mesh.is_frozen(QuadMesh::quad(h)) || !self.holds(mesh.origin(QuadMesh::opposite(h)))
     }
 
-    /// The rim as one closed walk that meets no vertex twice.
-    fn rim(&mut self, mesh: &QuadMesh) -> Result<Vec<HalfEdge>, Stop> {
-        let all =
-            self.faces.iter().flat_map(|&f| mesh.outgoing(f)).filter(|&h| self.is_rim(mesh, h));
+    /// The rim as one closed walk that meets no vertex twice; `earlier` is that of the first
+    /// `within` faces.
+    fn rim(
+        &mut self,
+        mesh: &QuadMesh,
+        (earlier, within): (&[HalfEdge], usize),
+    ) -> Result<Vec<HalfEdge>, Stop> {
+        let later = self.faces[within..].iter().flat_map(|&f| mesh.outgoing(f));
+        let all = earlier.iter().copied().chain(later).filter(|&h| self.is_rim(mesh, h));
         let (mut first, mut count) = (NONE, 0);
         for h in all {
             first = first.min(h);
@@ -146,22 +163,22 @@ impl Grower {
         if first == NONE {
             return Err(if self.faces.is_empty() { Stop::Empty } else { Stop::NotADisk });
         }
+        self.walk += 1;
         let mut rim = Vec::with_capacity(count);
         let mut h = first;
         loop {
+            let met = &mut self.met[mesh.target(h) as usize];
+            if *met == self.walk || rim.len() == count {
+                return Err(Stop::NotADisk);
+            }
+            *met = self.walk;
             rim.push(h);
             h = self.next_rim(mesh, h);
             if h == first {
                 break;
             }
-            if rim.len() == count {
-                return Err(Stop::NotADisk);
-            }
         }
-        let mut vertices: Vec<Vertex> = rim.iter().map(|&h| mesh.target(h)).collect();
-        vertices.sort_unstable();
-        let simple = vertices.windows(2).all(|w| w[0] != w[1]);
-        if rim.len() == count && simple { Ok(rim) } else { Err(Stop::NotADisk) }
+        if rim.len() == count { Ok(rim) } else { Err(Stop::NotADisk) }
     }
 
     fn next_rim(&self, mesh: &QuadMesh, h: HalfEdge) -> HalfEdge {
@@ -191,7 +208,8 @@ impl Grower {
         RimVertex { wanted: inside - excess, outside, excess }
     }
 
-    fn region(&self, mesh: &QuadMesh, rim: Vec<HalfEdge>) -> Result<Region, Stop> {
+    /// The region within the rim that was walked along last.
+    fn region(&mut self, mesh: &QuadMesh, rim: Vec<HalfEdge>) -> Result<Region, Stop> {
         let mut region = Region { faces: self.faces.clone(), ..Region::default() };
         region.irregularity = self.faces.iter().map(|&f| mesh.irregularity(f)).sum();
         for i in 0..rim.len() {
@@ -203,7 +221,7 @@ impl Grower {
             region.irregularity += at.excess.unsigned_abs();
             region.rim_irregularity_after += (inside - at.wanted).unsigned_abs();
         }
-        region.interior = self.interior(mesh, &rim);
+        region.interior = self.interior(mesh);
         if region.interior.iter().any(|&v| mesh.is_held(v) && !mesh.is_pin(v)) {
             return Err(Stop::Held);
         }
@@ -215,14 +233,17 @@ impl Grower {
         if euler == 1 { Ok(region) } else { Err(Stop::NotADisk) }
     }
 
-    /// Vertices of the faces that are not on the rim, sorted.
-    fn interior(&self, mesh: &QuadMesh, rim: &[HalfEdge]) -> Vec<Vertex> {
-        let mut on_rim: Vec<Vertex> = rim.iter().map(|&h| mesh.target(h)).collect();
-        on_rim.sort_unstable();
-        let mut inside: Vec<Vertex> = self.faces.iter().flat_map(|&f| mesh.neighbours(f)).collect();
+    /// Vertices of the faces that are not on the rim that was walked along last, sorted.
+    fn interior(&mut self, mesh: &QuadMesh) -> Vec<Vertex> {
+        let mut inside = Vec::new();
+        for v in self.faces.iter().flat_map(|&f| mesh.neighbours(f)) {
+            let met = &mut self.met[v as usize];
+            if *met != self.walk {
+                *met = self.walk;
+                inside.push(v);
+            }
+        }
         inside.sort_unstable();
-        inside.dedup();
-        inside.retain(|v| on_rim.binary_search(v).is_err());
         inside
     }
 }

@@ -1,6 +1,7 @@
 //! Regions worth refilling: around an irregular element and the ones nearest to it.
 
 use crate::mesh::NONE;
+use crate::patch::region::Stop;
 use crate::patch::{Grower, Region};
 use crate::sqrtcc::{HalfEdge, QuadMesh, Vertex};
 
@@ -19,6 +20,8 @@ pub struct Limits {
 #[derive(Debug, Clone, Default)]
 pub struct Clusters {
     grower: Grower,
+    /// Grows regions around the first few partners together.
+    joint: Grower,
     parent: Vec<Vertex>,
     visited: Vec<Vertex>,
 }
@@ -63,9 +66,9 @@ impl Clusters {
         limits: Limits,
         regions: &mut Vec<Region>,
     ) {
-        let partners = self.nearest(mesh, at, limits);
-        let keep = |region: Option<Region>, regions: &mut Vec<Region>| {
-            let Some(region) = region else { return };
+        let most = limits.faces;
+        let keep = |region: Result<Region, Stop>, regions: &mut Vec<Region>| {
+            let Ok(region) = region else { return };
             let known = regions
                 .iter()
                 .any(|r| r.rim.len() == region.rim.len() && r.faces.len() == region.faces.len());
@@ -73,10 +76,27 @@ impl Clusters {
                 regions.push(region);
             }
         };
-        keep(self.grow(mesh, at, &[], limits.faces), regions);
+        let alone = grow(&mut self.grower, mesh, (at, &self.parent), &[], most);
+        // A convex disk around more is no smaller: what is too large will not fit any more.
+        if is_too_large(&alone) {
+            return;
+        }
+        keep(alone, regions);
+        let partners = self.nearest(mesh, at, limits);
+        let (mut fits, mut is_convex) = (true, false);
         for i in 0..partners.len() {
-            keep(self.grow(mesh, at, &partners[i..=i], limits.faces), regions);
-            keep(self.grow(mesh, at, &partners[..=i], limits.faces), regions);
+            let ways = (at, &self.parent[..]);
+            let single = grow(&mut self.grower, mesh, ways, &partners[i..=i], most);
+            fits &= !is_too_large(&single);
+            keep(single, regions);
+            // A disk that holds the next way already is the same with it.
+            let same = i == 0 || is_convex && !add_way(&mut self.joint, mesh, ways, partners[i]);
+            if fits && !same {
+                let together = grow(&mut self.joint, mesh, ways, &partners[..=i], most);
+                fits = !is_too_large(&together);
+                is_convex = together.is_ok();
+                keep(together, regions);
+            }
         }
         for v in std::mem::take(&mut self.visited) {
             self.parent[v as usize] = NONE;
@@ -112,36 +132,53 @@ impl Clusters {
             self.visited.push(v);
         }
     }
+}
 
-    /// The convex disk around the origin of `start`, on its side, and the paths to the partners.
-    fn grow(
-        &mut self,
-        mesh: &QuadMesh,
-        start: HalfEdge,
-        partners: &[Vertex],
-        most: usize,
-    ) -> Option<Region> {
-        self.grower.start(mesh);
-        let seed = mesh.origin(start);
-        if mesh.is_face(seed) {
-            self.grower.add_face(mesh, seed);
-        } else {
-            self.grower.add_sector(mesh, start);
-        }
-        for &partner in partners {
-            let mut at = partner;
-            while at != seed {
-                let from = self.parent[at as usize];
-                if mesh.is_face(at) {
-                    self.grower.add_face(mesh, at);
-                } else if let Some(h) = mesh.find(at, from) {
-                    self.grower.add_sector(mesh, h);
-                }
-                at = from;
-            }
-        }
-        self.grower.convex(mesh, most).ok()
+/// The convex disk around the origin of `start`, on its side, and the ways to the partners.
+fn grow(
+    grower: &mut Grower,
+    mesh: &QuadMesh,
+    (start, parent): (HalfEdge, &[Vertex]),
+    partners: &[Vertex],
+    most: usize,
+) -> Result<Region, Stop> {
+    grower.start(mesh);
+    let seed = mesh.origin(start);
+    if mesh.is_face(seed) {
+        grower.add_face(mesh, seed);
+    } else {
+        grower.add_sector(mesh, start);
     }
+    for &partner in partners {
+        add_way(grower, mesh, (start, parent), partner);
+    }
+    grower.convex(mesh, most)
+}
+
+/// Takes in the faces on the way from the origin of `start` to a partner; whether there were any
+/// that had not been taken in.
+fn add_way(
+    grower: &mut Grower,
+    mesh: &QuadMesh,
+    (start, parent): (HalfEdge, &[Vertex]),
+    partner: Vertex,
+) -> bool {
+    let before = grower.face_count();
+    let mut at = partner;
+    while at != mesh.origin(start) {
+        let from = parent[at as usize];
+        if mesh.is_face(at) {
+            grower.add_face(mesh, at);
+        } else if let Some(h) = mesh.find(at, from) {
+            grower.add_sector(mesh, h);
+        }
+        at = from;
+    }
+    grower.face_count() > before
+}
+
+fn is_too_large(region: &Result<Region, Stop>) -> bool {
+    matches!(region, Err(Stop::TooLarge))
 }
 
 fn can_gain(region: &Region, least: u32) -> bool {
