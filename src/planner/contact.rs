@@ -5,9 +5,10 @@
 //! closest to. An edit is then checked against the part of the reference that it has to cover,
 //! without a search: closest-point projection alone does not notice a corner that is cut off.
 
-use crate::mesh::{MeshError, NONE, Point, Vector};
+use super::cover::Cover;
+use crate::mesh::{MeshError, NONE, Point};
 use crate::sqrtcc::{Lowered, QuadMesh, Vertex, lower};
-use crate::surface::{Reference, squared_distance};
+use crate::surface::Reference;
 
 /// Probes for each face of the mesh, beside those on creases.
 const PROBES_PER_FACE: usize = 3;
@@ -25,6 +26,8 @@ pub struct Contact {
     /// First probe of each face, by vertex id, and the probe after each probe.
     first: Vec<u32>,
     next: Vec<u32>,
+    /// The faces that probes are handed to.
+    cover: Cover,
 }
 
 impl Contact {
@@ -119,19 +122,13 @@ impl Contact {
             }
         }
         faces.retain(|&f| mesh.is_alive(f) && !mesh.is_ghost(f));
-        let corners = |&f: &Vertex| mesh.neighbours(f).map(|v| mesh.position(v)).collect();
-        let balls: Vec<Ball> = faces.iter().map(|f| Ball::new(corners(f))).collect();
+        let corners = |&f: &Vertex| mesh.neighbours(f).map(|v| mesh.position(v));
+        self.cover.fill(faces.iter().map(corners));
         for probe in loose {
-            let at = self.points[probe as usize];
-            let mut nearest = (f64::INFINITY, NONE);
-            for (ball, &f) in balls.iter().zip(&faces) {
-                let squared = ball.nearer(&at, nearest.0);
-                if squared < nearest.0 {
-                    nearest = (squared, f);
-                }
-            }
-            if nearest.1 != NONE {
-                self.put(probe, nearest.1, nearest.0.sqrt());
+            if let Some((squared, i)) =
+                self.cover.nearest(&self.points[probe as usize], f64::INFINITY)
+            {
+                self.put(probe, faces[i], squared.sqrt());
             }
         }
     }
@@ -141,44 +138,4 @@ impl Contact {
         self.next[probe as usize] = self.first[face as usize];
         self.first[face as usize] = probe;
     }
-}
-
-/// A face and a ball around it.
-pub(super) struct Ball {
-    pub(super) corners: smallvec::SmallVec<[Point; 8]>,
-    middle: Point,
-    radius: f64,
-}
-
-impl Ball {
-    pub(super) fn new(corners: smallvec::SmallVec<[Point; 8]>) -> Self {
-        let middle = middle_of(&corners);
-        let radius = corners.iter().map(|p| (p - middle).norm()).fold(0.0, f64::max);
-        Self { corners, middle, radius }
-    }
-
-    /// The squared distance from `at`, or `least` if that is not more.
-    pub(super) fn nearer(&self, at: &Point, least: f64) -> f64 {
-        let gap = (at - self.middle).norm() - self.radius;
-        if gap > 0.0 && gap * gap >= least {
-            return least;
-        }
-        fan_distance(&self.corners, at).min(least)
-    }
-}
-
-/// Squared distance from `at` to a polygon, taken as triangles around its middle.
-#[must_use]
-pub fn fan_distance(corners: &[Point], at: &Point) -> f64 {
-    let n = corners.len();
-    let middle = middle_of(corners);
-    let triangles = (0..n).map(|i| [middle, corners[i], corners[(i + 1) % n]]);
-    triangles.map(|t| squared_distance(at, &t)).fold(f64::INFINITY, f64::min)
-}
-
-/// The mean of the corners of a polygon.
-#[must_use]
-pub fn middle_of(corners: &[Point]) -> Point {
-    let sum: Vector = corners.iter().map(|p| p.coords).sum();
-    Point::from(sum / corners.len().max(1) as f64)
 }

@@ -4,7 +4,8 @@
 //! still good or as good as before, corner angles have not grown worse by more than the exchange
 //! rate λ per irregular element removed, and the surface is within the budget, both ways.
 
-use super::contact::{Ball, Contact, fan_distance, middle_of};
+use super::contact::Contact;
+use super::cover::{Cover, fan_distance, middle_of};
 use crate::knobs::knobs;
 use crate::mesh::{Point, Vector};
 use crate::smooth::{Orientation, Region as Patch, RelaxOptions, relax_local};
@@ -154,6 +155,8 @@ pub struct Gate {
     /// Faces of the region, as numbers of the patch, that the edit made or changed.
     changed: Vec<u32>,
     patch: Patch,
+    /// The faces of the region, relaxed.
+    cover: Cover,
 }
 
 /// Before the relaxing and after each sixth of it: how many times the allowed growth of angles, and
@@ -339,21 +342,22 @@ impl Gate {
     /// How much Σ squared distance grows over the probes of the region; `None` if one of them is
     /// too far from the mesh now.
     fn uncovered(
-        &self,
+        &mut self,
         touched: &[Vertex],
         (setting, contact): (&Setting, &Contact),
     ) -> Option<f64> {
-        let faces: Vec<_> =
-            (0..self.faces.len() as u32).map(|i| Ball::new(self.points_of(i))).collect();
+        let patch = &self.patch;
+        let corners = |i| patch.face(i).iter().map(|&v| patch.point(v));
+        self.cover.fill((0..self.faces.len()).map(corners));
         let gone = touched.iter().filter(|&&v| self.stamp.get(v as usize) != Some(&self.epoch));
-        let own = self.faces.iter().zip(faces.iter().map(Some));
+        let own = self.faces.iter().zip((0..).map(Some));
         let mut growth = 0.0;
         for (&f, own) in own.chain(gone.map(|f| (f, None))) {
             for (probe, before) in contact.probes(f) {
                 let mut squared =
-                    own.map_or(f64::INFINITY, |face| fan_distance(&face.corners, &probe));
+                    own.map_or(f64::INFINITY, |i| fan_distance(self.cover.corners(i), &probe));
                 if squared > before * before {
-                    squared = faces.iter().fold(squared, |least, face| face.nearer(&probe, least));
+                    squared = self.cover.nearest(&probe, squared).map_or(squared, |n| n.0);
                 }
                 if squared > setting.cover.max(before).powi(2) {
                     return None;

@@ -10,6 +10,7 @@ pub mod automation;
 pub mod clusters;
 pub mod contact;
 pub mod cost;
+mod cover;
 pub mod edit;
 pub mod gate;
 pub mod global;
