@@ -19,12 +19,7 @@ type Plane = Point2<f64>;
 /// vertices lie evenly in the disk.
 #[must_use]
 pub fn transport(mesh: &QuadMesh, region: &Region, filling: &Filling) -> Vec<Point> {
-    let rim: Vec<Vertex> = region.rim.iter().map(|&h| mesh.target(h)).collect();
-    let circle = on_circle(&rim.iter().map(|&v| mesh.position(v)).collect::<Vec<_>>());
-    let old = OldPatch::new(mesh, region, &rim, &circle);
-    let neighbours = edges_of(filling);
-    let new = tutte(&circle, filling.interior as usize, &neighbours);
-    new[rim.len()..].iter().map(|&p| old.lift(p)).collect()
+    OldPatch::new(mesh, region).transport(filling)
 }
 
 /// The rim on the unit circle, by length.
@@ -44,14 +39,14 @@ fn on_circle(rim: &[Point]) -> Vec<Plane> {
 }
 
 /// Embeds `inner` vertices numbered after the rim; `neighbours[i]` are those of inner vertex i.
-fn tutte(rim: &[Plane], inner: usize, neighbours: &[Vec<u32>]) -> Vec<Plane> {
+fn tutte(rim: &[Plane], inner: usize, neighbours: &Neighbours) -> Vec<Plane> {
     const RELAXATION: f64 = 1.6;
     let mut at = rim.to_vec();
     at.resize(rim.len() + inner, Plane::origin());
     let most = 40 + 12 * (inner as f64).sqrt() as usize;
     for _ in 0..most {
         let mut largest: f64 = 0.0;
-        for (i, near) in neighbours.iter().enumerate() {
+        for (i, near) in neighbours.lists().enumerate() {
             let sum: Vector2<f64> = near.iter().map(|&j| at[j as usize].coords).sum();
             let mean = sum / near.len().max(1) as f64;
             let by = (mean - at[rim.len() + i].coords) * RELAXATION;
@@ -65,20 +60,45 @@ fn tutte(rim: &[Plane], inner: usize, neighbours: &[Vec<u32>]) -> Vec<Plane> {
     at
 }
 
-fn edges_of(filling: &Filling) -> Vec<Vec<u32>> {
-    let mut neighbours = vec![Vec::new(); filling.interior as usize];
-    for face in filling.faces() {
-        for (i, &a) in face.iter().enumerate() {
-            if a >= filling.rim {
-                neighbours[(a - filling.rim) as usize].push(face[(i + 1) % face.len()]);
+/// The neighbours of each inner vertex, one list after the other.
+struct Neighbours {
+    /// Where each list begins; one entry more than there are lists.
+    first: Vec<u32>,
+    listed: Vec<u32>,
+}
+
+impl Neighbours {
+    fn of_filling(filling: &Filling) -> Self {
+        let inner = |&v: &u32| v.checked_sub(filling.rim).map(|i| i as usize);
+        let mut first = vec![0; filling.interior as usize + 1];
+        for i in filling.corners.iter().filter_map(inner) {
+            first[i + 1] += 1;
+        }
+        for i in 1..first.len() {
+            first[i] += first[i - 1];
+        }
+        let (mut next, mut listed) = (first.clone(), vec![0; first[first.len() - 1] as usize]);
+        for face in filling.faces() {
+            for (k, v) in face.iter().enumerate() {
+                if let Some(i) = inner(v) {
+                    listed[next[i] as usize] = face[(k + 1) % face.len()];
+                    next[i] += 1;
+                }
             }
         }
+        Self { first, listed }
     }
-    neighbours
+
+    fn lists(&self) -> impl Iterator<Item = &[u32]> {
+        self.first.windows(2).map(|w| &self.listed[w[0] as usize..w[1] as usize])
+    }
 }
 
 /// The old patch in the disk, cut into triangles around the middle of each face.
-struct OldPatch {
+#[derive(Debug)]
+pub struct OldPatch {
+    /// The rim, which is that of every filling too.
+    circle: Vec<Plane>,
     triangles: Vec<Triangle>,
     /// Cells along each side of the square around the disk.
     cells: usize,
@@ -91,15 +111,19 @@ struct OldPatch {
 type Triangle = ([Plane; 3], [Point; 3]);
 
 impl OldPatch {
-    fn new(mesh: &QuadMesh, region: &Region, rim: &[Vertex], circle: &[Plane]) -> Self {
+    /// Embeds `region` of a mesh that is as it was before anything is replaced.
+    #[must_use]
+    pub fn new(mesh: &QuadMesh, region: &Region) -> Self {
+        let rim: Vec<Vertex> = region.rim.iter().map(|&h| mesh.target(h)).collect();
+        let circle = on_circle(&rim.iter().map(|&v| mesh.position(v)).collect::<Vec<_>>());
         let all = rim.iter().chain(&region.interior);
         let number: FxHashMap<Vertex, u32> = all.zip(0..).map(|(&v, i)| (v, i)).collect();
-        let neighbours: Vec<Vec<u32>> = region
-            .interior
-            .iter()
-            .map(|&v| mesh.diagonals(v).filter_map(|w| number.get(&w).copied()).collect())
-            .collect();
-        let at = tutte(circle, region.interior.len(), &neighbours);
+        let mut neighbours = Neighbours { first: vec![0], listed: Vec::new() };
+        for &v in &region.interior {
+            neighbours.listed.extend(mesh.diagonals(v).filter_map(|w| number.get(&w)));
+            neighbours.first.push(neighbours.listed.len() as u32);
+        }
+        let at = tutte(&circle, region.interior.len(), &neighbours);
         let mut triangles = Vec::with_capacity(4 * region.faces.len());
         for &f in &region.faces {
             let corners: SmallVec<[(Plane, Point); 8]> = mesh
@@ -114,9 +138,18 @@ impl OldPatch {
                 triangles.push(([flat, a.0, b.0], [solid, a.1, b.1]));
             }
         }
-        let mut patch = Self { triangles, cells: 1, first: Vec::new(), listed: Vec::new() };
+        let (first, listed) = (Vec::new(), Vec::new());
+        let mut patch = Self { circle, triangles, cells: 1, first, listed };
         patch.sort_into_cells();
         patch
+    }
+
+    /// Places for the new vertices of `filling`, see [`transport`].
+    #[must_use]
+    pub fn transport(&self, filling: &Filling) -> Vec<Point> {
+        let neighbours = Neighbours::of_filling(filling);
+        let new = tutte(&self.circle, filling.interior as usize, &neighbours);
+        new[self.circle.len()..].iter().map(|&p| self.lift(p)).collect()
     }
 
     /// Lists the triangles whose box meets each cell.

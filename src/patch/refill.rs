@@ -3,6 +3,7 @@
 //! The quads of the rim stay and only change their inner d-corner; everything inside is new. The
 //! construction is that of lifting: each corner of a new face owns the half-edge face → vertex.
 
+use super::embed::OldPatch;
 use super::{Filling, Region};
 use crate::mesh::{NONE, Point};
 use crate::ops::{MAX_VALENCE, MIN_VALENCE, Refusal};
@@ -33,7 +34,16 @@ impl Refill {
     /// Puts `filling`, whose rim vertex 0 is the start of `region.rim[0]`, in place of `region`;
     /// refused if it has fewer new vertices than there are pins inside.
     pub fn new(mesh: &QuadMesh, region: &Region, filling: Filling) -> Result<Self, Refusal> {
-        let mut places = super::embed::transport(mesh, region, &filling);
+        Self::of(mesh, (region, &OldPatch::new(mesh, region)), filling)
+    }
+
+    /// The same for a region that is embedded already.
+    pub fn of(
+        mesh: &QuadMesh,
+        (region, embedded): (&Region, &OldPatch),
+        filling: Filling,
+    ) -> Result<Self, Refusal> {
+        let mut places = embedded.transport(&filling);
         let pins = pins(mesh, region, &mut places)?;
         Ok(Self {
             faces: region.faces.clone(),

@@ -68,6 +68,9 @@ impl Filling {
     }
 }
 
+/// The lengths of the sides of a polygon.
+type Sides = smallvec::SmallVec<[u32; 6]>;
+
 /// A polygon to fill: its rim, and which of the rim vertices are corners (sorted positions).
 #[derive(Debug, Clone)]
 struct Polygon {
@@ -76,7 +79,7 @@ struct Polygon {
 }
 
 impl Polygon {
-    fn sides(&self) -> Vec<u32> {
+    fn sides(&self) -> Sides {
         let (k, n) = (self.corners.len(), self.rim.len());
         (0..k)
             .map(|i| ((self.corners[(i + 1) % k] + n - self.corners[i] - 1) % n + 1) as u32)
@@ -340,10 +343,10 @@ struct Chord {
 
 impl Chord {
     /// Side lengths of the part on the left of the chord's way back, and of the part on the other.
-    fn parts(&self, sides: &[u32]) -> [Vec<u32>; 2] {
+    fn parts(&self, sides: &[u32]) -> [Sides; 2] {
         let k = sides.len();
         let walk = |from: usize, start: u32, to: usize, end: u32| {
-            let mut lengths = vec![sides[from] - start];
+            let mut lengths = Sides::from_slice(&[sides[from] - start]);
             let mut i = (from + 1) % k;
             while i != to {
                 lengths.push(sides[i]);
@@ -375,18 +378,16 @@ fn chords(polygon: &Polygon, most: usize) -> Vec<Chord> {
             for end in (1..sides[to]).step_by(stride(sides[to])) {
                 let parts = Chord { from, start, to, end, length: 0 }.parts(&sides);
                 for length in lengths(&parts) {
-                    let spokes = parts.each_ref().map(|part| with_last(part, length));
-                    if let [Some(a), Some(b)] = spokes.map(|part| double_spokes(&part)) {
+                    if let [Some(a), Some(b)] = spokes(&parts, length) {
                         let chord = Chord { from, start, to, end, length };
-                        let feet = feet(polygon, chord, [&a, &b]);
-                        scored.push((imbalance(&a, &b, length), chord, feet));
+                        scored.push((imbalance(&a, &b, length), chord));
                     }
                 }
             }
         }
     }
     scored.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
-    distinct(scored, polygon.rim.len(), most)
+    distinct(scored.into_iter().map(|(_, chord)| chord), polygon, &sides, most)
 }
 
 /// Long sides are tried at some twenty places only.
@@ -397,7 +398,7 @@ fn stride(side: u32) -> usize {
 /// The lengths of the chord, whose place in `parts` is the last, for which both parts can have
 /// positive spokes: in a triangle less than the sum of the other sides and more than their
 /// difference, and likewise in a pentagon.
-fn lengths(parts: &[Vec<u32>; 2]) -> std::ops::Range<u32> {
+fn lengths(parts: &[Sides; 2]) -> std::ops::Range<u32> {
     let (mut least, mut most) = (1, u32::MAX);
     for part in parts {
         let a = |i: usize| i64::from(part[i]);
@@ -415,8 +416,13 @@ fn lengths(parts: &[Vec<u32>; 2]) -> std::ops::Range<u32> {
     least..most
 }
 
+/// Twice the spokes of both parts if the chord has that length; `None` for one that has none.
+fn spokes(parts: &[Sides; 2], length: u32) -> [Option<smallvec::SmallVec<[u32; 5]>>; 2] {
+    parts.each_ref().map(|part| double_spokes(&with_last(part, length)))
+}
+
 /// The side lengths with the chord as the last.
-fn with_last(part: &[u32], length: u32) -> smallvec::SmallVec<[u32; 5]> {
+fn with_last(part: &[u32], length: u32) -> Sides {
     part[..part.len() - 1].iter().copied().chain([length]).collect()
 }
 
@@ -453,18 +459,25 @@ fn feet(polygon: &Polygon, chord: Chord, spokes: [&[u32]; 2]) -> Feet {
 }
 
 /// The first few whose spokes meet the rim at clearly different places.
-fn distinct(scored: Vec<(f64, Chord, Feet)>, rim: usize, most: usize) -> Vec<Chord> {
-    let turn = 2 * rim as u32;
+fn distinct(
+    chords: impl Iterator<Item = Chord>,
+    polygon: &Polygon,
+    sides: &[u32],
+    most: usize,
+) -> Vec<Chord> {
+    let turn = 2 * polygon.rim.len() as u32;
     let apart = |a: u32, b: u32| a.abs_diff(b).min(turn - a.abs_diff(b));
     let clear = (turn / 32).max(2);
     let differs = |a: &Feet, b: &Feet| {
         a.len() != b.len() || a.iter().zip(b).any(|(&a, &b)| apart(a, b) >= clear)
     };
     let mut chosen: Vec<(Chord, Feet)> = Vec::new();
-    for (_, chord, feet) in scored {
+    for chord in chords {
         if chosen.len() == most {
             break;
         }
+        let [Some(a), Some(b)] = spokes(&chord.parts(sides), chord.length) else { continue };
+        let feet = feet(polygon, chord, [&a, &b]);
         if chosen.iter().all(|(_, other)| differs(other, &feet)) {
             chosen.push((chord, feet));
         }

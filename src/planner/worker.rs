@@ -11,8 +11,9 @@ use super::{PlanOptions, local};
 use crate::mesh::Point;
 use crate::moves::Dipole;
 use crate::ops::Op;
+use crate::patch::embed::OldPatch;
 use crate::patch::{Refill, Region, fillings};
-use crate::sqrtcc::{QuadMesh, Vertex};
+use crate::sqrtcc::{Changes, QuadMesh, Vertex};
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
 
@@ -402,10 +403,11 @@ impl Worker {
     ) -> Option<Proposal> {
         let task = context.task;
         let sweeps = task.gate.options.refill_sweeps + (region.faces.len() as f64).sqrt() as u32;
-        let mut best: Option<Proposal> = None;
+        let (mut best, mut embedded): (Option<Proposal>, Option<OldPatch>) = (None, None);
+        let set = region.key();
         let all = fillings(region.rim.len(), &region.corners, task.plan.fillings as usize);
         for (number, filling) in all.into_iter().enumerate() {
-            let key = (region.key(), number);
+            let key = (set, number);
             let after = region.rim_irregularity_after + filling.irregularity();
             let growth = (filling.face_count() as f64 / region.faces.len() as f64).ln().abs();
             let known =
@@ -415,7 +417,8 @@ impl Worker {
                 continue;
             }
             let gain = region.irregularity - after;
-            let Ok(refill) = Refill::new(&self.mesh, region, filling) else { continue };
+            let patch = embedded.get_or_insert_with(|| OldPatch::new(&self.mesh, region));
+            let Ok(refill) = Refill::of(&self.mesh, (region, patch), filling) else { continue };
             let edit = Edit::Refill(refill);
             let found = self.attempt(seed, (gain, 0.0, edit), sweeps, context, outcome);
             match found {
