@@ -12,13 +12,13 @@ use super::worker::{
     Context, FORGIVING, MOST_LOSS, Outcome, Proposal, RefillKey, Size, Stage, Task, Worker,
 };
 use crate::mesh::Point;
-use crate::sqrtcc::{QuadMesh, Vertex};
+use crate::sqrtcc::{Changes, QuadMesh, Vertex};
 use crate::watch::{Phase, Watch};
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::sync::Mutex;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// An edit that was made.
 #[derive(Debug, Clone, Serialize)]
@@ -78,6 +78,8 @@ pub struct Slack {
 #[derive(Debug)]
 pub struct Schedule {
     workers: Vec<Mutex<Worker>>,
+    /// What each round since the last restart has written.
+    changes: Vec<Changes>,
     /// The round in which the connectivity around a vertex last changed.
     changed: Vec<u32>,
     /// Seeds for which moves were looked for in vain, over all stages.
@@ -104,6 +106,7 @@ impl Schedule {
         let workers = (0..=rayon::current_num_threads()).map(|_| Mutex::default()).collect();
         Self {
             workers,
+            changes: Vec::new(),
             changed: Vec::new(),
             without_moves: BTreeMap::new(),
             failed: BTreeMap::new(),
@@ -117,9 +120,13 @@ impl Schedule {
         }
     }
 
-    /// Lets every element be tried again: the rules have changed. From now on edits may use up
-    /// `slack`.
+    /// Lets every element be tried again: the rules have changed, or the mesh has. From now on
+    /// edits may use up `slack`.
     pub fn restart(&mut self, slack: Slack) {
+        self.changes.clear();
+        for worker in &mut self.workers {
+            worker.get_mut().unwrap_or_else(PoisonError::into_inner).forget();
+        }
         self.failed.clear();
         self.slack = slack;
     }
@@ -131,6 +138,8 @@ impl Schedule {
     }
 
     /// One round; whether there was something left to try.
+    ///
+    /// *Precondition:* nothing but rounds has written to the mesh since [`Self::restart`].
     pub fn round(
         &mut self,
         (mesh, contact): (&mut QuadMesh, &mut Contact),
@@ -207,9 +216,6 @@ impl Schedule {
         task: &Task,
         watch: &dyn Watch,
     ) -> Vec<Outcome> {
-        for worker in &self.workers {
-            lock(worker).sync(mesh);
-        }
         let context = Context { task, contact, size: self.size, hopeless: &self.hopeless };
         let done = std::sync::atomic::AtomicUsize::new(0);
         let left = mesh.total_irregularity() as usize;
@@ -221,8 +227,10 @@ impl Schedule {
                     return Outcome::of(seed);
                 }
                 let index = rayon::current_thread_index().map_or(0, |i| i + 1);
-                let outcome =
-                    lock(&self.workers[index % self.workers.len()]).propose(seed, context);
+                let mut worker = lock(&self.workers[index % self.workers.len()]);
+                worker.sync(mesh, &self.changes);
+                let outcome = worker.propose(seed, context);
+                drop(worker);
                 let count = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
                 watch.progress(Phase::Plan, count, seeds.len(), Some(left));
                 outcome
@@ -274,6 +282,7 @@ impl Schedule {
             self.record(proposal, gain, planned.0);
             made += 1;
         }
+        self.changes.push(mesh.changes());
         mesh.commit();
         made
     }
@@ -381,8 +390,12 @@ impl Spacing {
     }
 }
 
-/// A worker is only ever used by one thread at a time; one that panicked is as good as new,
-/// since it takes over the mesh before it is used again.
-fn lock(worker: &Mutex<Worker>) -> std::sync::MutexGuard<'_, Worker> {
-    worker.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+/// A worker is only ever used by one thread at a time; one that panicked is as good as new once it
+/// takes over the whole mesh.
+fn lock(worker: &Mutex<Worker>) -> MutexGuard<'_, Worker> {
+    worker.lock().unwrap_or_else(|poisoned| {
+        let mut worker = poisoned.into_inner();
+        worker.forget();
+        worker
+    })
 }

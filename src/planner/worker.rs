@@ -177,6 +177,8 @@ fn count_faces(mesh: &QuadMesh, vertices: &[Vertex]) -> i64 {
 #[derive(Debug, Clone, Default)]
 pub struct Worker {
     mesh: QuadMesh,
+    /// How many of the changes it has taken over; nothing if the mesh is not a copy yet.
+    taken: Option<usize>,
     gate: Gate,
     clusters: Clusters,
 }
@@ -208,9 +210,19 @@ pub struct Context<'a> {
 type Candidate = (u32, f64, Edit);
 
 impl Worker {
-    /// Takes over the state of the mesh.
-    pub fn sync(&mut self, mesh: &QuadMesh) {
-        self.mesh.clone_from(mesh);
+    /// Takes over the state of the mesh: as a whole at first, later what is new in `changes`, to
+    /// which each round adds what it did. O(what is new).
+    pub fn sync(&mut self, mesh: &QuadMesh, changes: &[Changes]) {
+        match self.taken {
+            Some(taken) => changes[taken..].iter().for_each(|c| self.mesh.follow(mesh, c)),
+            None => self.mesh.clone_from(mesh),
+        }
+        self.taken = Some(changes.len());
+    }
+
+    /// Lets the mesh be taken over as a whole next time.
+    pub fn forget(&mut self) {
+        (self.mesh, self.taken) = (QuadMesh::default(), None);
     }
 
     /// The best edit that begins with `seed`.

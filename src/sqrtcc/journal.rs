@@ -1,7 +1,7 @@
 //! The journal: every write to Q as (array, index, old value), so that an edit is applied whole
 //! or undone whole, bit for bit. New ids are only appended; undo pops them.
 
-use super::QuadMesh;
+use super::{Quad, QuadMesh, Vertex};
 use crate::mesh::Point;
 
 /// Which array a journal entry is about.
@@ -34,6 +34,13 @@ pub(super) struct Journal {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[must_use]
 pub struct Mark(usize);
+
+/// What was written, vertex by vertex and quad by quad: with it a copy follows its original.
+#[derive(Debug, Clone, Default)]
+pub struct Changes {
+    vertices: Vec<Vertex>,
+    quads: Vec<Quad>,
+}
 
 impl Journal {
     #[inline]
@@ -81,6 +88,52 @@ impl QuadMesh {
         self.journal.points.clear();
     }
 
+    /// What was written since the journal was last cleared.
+    #[must_use]
+    pub fn changes(&self) -> Changes {
+        let mut changes = Changes::default();
+        for entry in &self.journal.entries {
+            match entry.slot {
+                Slot::Origin | Slot::Twin => changes.quads.push(Self::quad(entry.index)),
+                Slot::Out | Slot::Valence | Slot::Position => changes.vertices.push(entry.index),
+                Slot::NewVertex | Slot::NewQuad => (),
+            }
+        }
+        for list in [&mut changes.vertices, &mut changes.quads] {
+            list.sort_unstable();
+            list.dedup();
+        }
+        changes
+    }
+
+    /// Takes over from `original`, of which this is a copy, what has been written there since:
+    /// those changes and all that is new. O(changes).
+    ///
+    /// *Precondition:* nothing but what is journaled was written to vertices and quads that both
+    /// have.
+    pub fn follow(&mut self, original: &Self, changes: &Changes) {
+        let (vertices, quads) = (self.out.len(), self.kind.len());
+        for v in changes.vertices.iter().map(|&v| v as usize).take_while(|&v| v < vertices) {
+            self.out[v] = original.out[v];
+            self.valence[v] = original.valence[v];
+            self.position[v] = original.position[v];
+        }
+        for q in changes.quads.iter().map(|&q| q as usize).take_while(|&q| q < quads) {
+            let corners = 4 * q..4 * q + 4;
+            self.origin[corners.clone()].copy_from_slice(&original.origin[corners.clone()]);
+            self.twin[corners.clone()].copy_from_slice(&original.twin[corners]);
+        }
+        self.out.extend_from_slice(&original.out[vertices..]);
+        self.valence.extend_from_slice(&original.valence[vertices..]);
+        self.class.extend_from_slice(&original.class[vertices..]);
+        self.group.extend_from_slice(&original.group[vertices..]);
+        self.position.extend_from_slice(&original.position[vertices..]);
+        self.origin.extend_from_slice(&original.origin[4 * quads..]);
+        self.twin.extend_from_slice(&original.twin[4 * quads..]);
+        self.kind.extend_from_slice(&original.kind[quads..]);
+        self.ideal.extend_from_slice(&original.ideal[2 * quads..]);
+    }
+
     /// The vertices whose connectivity or position was written since `mark`, sorted, each once;
     /// the dead and those that undo would remove are among them.
     #[must_use]
@@ -115,5 +168,43 @@ impl QuadMesh {
         self.twin.truncate(self.twin.len() - 4);
         self.kind.pop();
         self.ideal.truncate(self.ideal.len() - 2);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::shapes;
+    use crate::sqrtcc::lift;
+    use fixedbitset::FixedBitSet;
+
+    /// All that a mesh consists of.
+    fn whole(mesh: &QuadMesh) -> String {
+        let quads = (&mesh.origin, &mesh.twin, &mesh.kind, &mesh.ideal);
+        let vertices = (&mesh.out, &mesh.valence, &mesh.class, &mesh.group, &mesh.position);
+        format!("{quads:?} {vertices:?}")
+    }
+
+    #[test]
+    fn a_copy_that_follows_is_like_its_original() {
+        let mut mesh = lift(&shapes::sphere(3), &FixedBitSet::new()).unwrap();
+        mesh.commit();
+        let mut copy = mesh.clone();
+        let mut rounds = Vec::new();
+        for round in 0..3 {
+            let (v, q) = (mesh.add_vertex_like(round, Point::new(1.0, 2.0, 3.0)), mesh.add_quad());
+            mesh.pin(v);
+            mesh.join(4 * q, 8 + round);
+            mesh.set_origin(4 * q + 1, v);
+            mesh.set_out(v, 4 * q + 1);
+            mesh.kill_vertex(5 + round);
+            mesh.kill_quad(round);
+            mesh.set_position(9 + round, Point::origin());
+            rounds.push(mesh.changes());
+            mesh.commit();
+        }
+        assert_ne!(whole(&copy), whole(&mesh));
+        rounds.iter().for_each(|changes| copy.follow(&mesh, changes));
+        assert_eq!(whole(&copy), whole(&mesh));
     }
 }

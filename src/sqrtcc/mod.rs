@@ -11,7 +11,7 @@ mod quad_mesh;
 mod sector;
 
 pub use check::Violation;
-pub use journal::Mark;
+pub use journal::{Changes, Mark};
 pub use lift::{LiftError, lift};
 pub use lower::{Lowered, lower};
 pub use quad_mesh::{HalfEdge, Quad, QuadKind, QuadMesh, Vertex};
