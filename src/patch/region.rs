@@ -13,7 +13,7 @@ use std::hash::BuildHasher;
 /// A disk of faces with a convex rim, ready to be refilled.
 #[derive(Debug, Clone, Default)]
 pub struct Region {
-    /// The faces (d-vertices).
+    /// The faces (d-vertices), sorted.
     pub faces: Vec<Vertex>,
     /// One half-edge face → vertex for each rim edge, counter-clockwise; the edge goes from the
     /// target of the half-edge to the target of the next one.
@@ -32,9 +32,7 @@ impl Region {
     /// A number for the set of faces: equal for equal sets, and hardly ever otherwise.
     #[must_use]
     pub fn key(&self) -> u64 {
-        let mut faces = self.faces.clone();
-        faces.sort_unstable();
-        FxBuildHasher.hash_one(faces)
+        FxBuildHasher.hash_one(&self.faces)
     }
 }
 
@@ -211,6 +209,7 @@ impl Grower {
     /// The region within the rim that was walked along last.
     fn region(&mut self, mesh: &QuadMesh, rim: Vec<HalfEdge>) -> Result<Region, Stop> {
         let mut region = Region { faces: self.faces.clone(), ..Region::default() };
+        region.faces.sort_unstable();
         region.irregularity = self.faces.iter().map(|&f| mesh.irregularity(f)).sum();
         for i in 0..rim.len() {
             let at = self.sector_inside(mesh, rim[(i + rim.len() - 1) % rim.len()], rim[i]);

@@ -216,7 +216,9 @@ impl Schedule {
         task: &Task,
         watch: &dyn Watch,
     ) -> Vec<Outcome> {
-        let context = Context { task, contact, size: self.size, hopeless: &self.hopeless };
+        let turned_down = &Mutex::default();
+        let context =
+            Context { task, contact, size: self.size, hopeless: &self.hopeless, turned_down };
         let done = std::sync::atomic::AtomicUsize::new(0);
         let left = mesh.total_irregularity() as usize;
         seeds

@@ -4,7 +4,7 @@ use super::clusters::{Clusters, Limits};
 use super::contact::Contact;
 use super::cost::CostOptions;
 use super::edit::{Edit, walk_terms};
-use super::gate::{Failure, Gate, Passed, Setting, Shape};
+use super::gate::{Failure, Gate, Passed, Rejected, Setting, Shape};
 use super::global::Group;
 use super::movement::MovementGraph;
 use super::{PlanOptions, local};
@@ -16,6 +16,7 @@ use crate::patch::{Refill, Region, fillings};
 use crate::sqrtcc::{Changes, QuadMesh, Vertex};
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// An edit that passed the gate, not yet made.
 #[derive(Debug, Clone)]
@@ -96,6 +97,11 @@ impl Outcome {
             hopeless: Vec::new(),
             scope: vec![seed],
         }
+    }
+
+    fn turn_down(&mut self, rejected: Rejected) {
+        self.failures.push(rejected.failure);
+        self.needs = self.needs.min(rejected.needs);
     }
 }
 
@@ -204,6 +210,13 @@ pub struct Context<'a> {
     pub size: Size,
     /// Refills that are known to fail.
     pub hopeless: &'a FxHashMap<RefillKey, f64>,
+    /// Refills that were turned down in this round: seeds near one another try the same ones.
+    pub turned_down: &'a Mutex<FxHashMap<RefillKey, Rejected>>,
+}
+
+/// What is locked is whole even if a thread panicked: entries are only added.
+fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A candidate: elements fewer, cost, edit.
@@ -428,6 +441,13 @@ impl Worker {
             {
                 continue;
             }
+            if let Some(rejected) = lock(context.turned_down).get(&key) {
+                outcome.turn_down(*rejected);
+                let rim = region.rim.iter().map(|&h| self.mesh.target(h));
+                outcome.scope.extend(region.faces.iter().chain(&region.interior).copied());
+                outcome.scope.extend(rim);
+                continue;
+            }
             let gain = region.irregularity - after;
             let patch = embedded.get_or_insert_with(|| OldPatch::new(&self.mesh, region));
             let Ok(refill) = Refill::of(&self.mesh, (region, patch), filling) else { continue };
@@ -438,13 +458,17 @@ impl Worker {
                     best = Some(p);
                 }
                 Ok(_) => (),
-                Err(needs) => outcome.hopeless.push((key, needs)),
+                Err(rejected) => {
+                    let needs = rejected.map_or(f64::INFINITY, |r| r.needs);
+                    outcome.hopeless.push((key, needs));
+                    lock(context.turned_down).extend(rejected.map(|r| (key, r)));
+                }
             }
         }
         best
     }
 
-    /// Makes an edit, has it judged, and undoes it; or the exchange rate that it would have needed.
+    /// Makes an edit, has it judged, and undoes it; or why it was turned down, if it could be made.
     fn attempt(
         &mut self,
         seed: Vertex,
@@ -452,10 +476,10 @@ impl Worker {
         sweeps: u32,
         context: Context,
         outcome: &mut Outcome,
-    ) -> Result<Proposal, f64> {
+    ) -> Result<Proposal, Option<Rejected>> {
         let task = context.task;
         let mark = self.mesh.mark();
-        edit.run(&mut self.mesh).map_err(|_| f64::INFINITY)?;
+        edit.run(&mut self.mesh).map_err(|_| None)?;
         let touched = self.mesh.touched_since(mark);
         let core = self.with_neighbours(&touched);
         let faces_after = count_faces(&self.mesh, &touched);
@@ -483,10 +507,9 @@ impl Worker {
                 moved,
             }),
             Err(rejected) => {
-                outcome.failures.push(rejected.failure);
-                outcome.needs = outcome.needs.min(rejected.needs);
+                outcome.turn_down(rejected);
                 outcome.scope.extend(touched.iter().filter(|&&v| v < self.mesh.vertex_ids()));
-                Err(rejected.needs)
+                Err(Some(rejected))
             }
         }
     }
