@@ -204,7 +204,9 @@ mod tests {
             mesh.commit();
         }
         assert_ne!(whole(&copy), whole(&mesh));
-        rounds.iter().for_each(|changes| copy.follow(&mesh, changes));
+        for changes in &rounds {
+            copy.follow(&mesh, changes);
+        }
         assert_eq!(whole(&copy), whole(&mesh));
     }
 }
