@@ -10,7 +10,7 @@ use super::shape::Shape;
 use super::stats::{Spread, share};
 use super::{MeasureOptions, MetricsError, connectivity};
 use crate::mesh::{Point, PolyMesh, Topology};
-use crate::surface::{Hit, Reference};
+use crate::surface::Reference;
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -37,7 +37,7 @@ impl Target {
     pub fn on(surface: Arc<Reference>, mesh: &PolyMesh, options: &MeasureOptions) -> Self {
         let mut probes = surface.samples(options.samples as usize);
         let sample_count = probes.len();
-        probes.extend(used_points(mesh));
+        probes.extend(used_points(mesh, &surface));
         let lines = Lines::new(mesh, &Topology::new(mesh), options.feature_angle_deg);
         Self { options: options.clone(), surface, probes, sample_count, lines }
     }
@@ -111,7 +111,8 @@ impl ReferenceMetrics {
         let own = Reference::plain(shape.mesh).map_err(MetricsError::Mesh)?;
         let diagonal = target.surface.diagonal();
         let (mesh_to_ref, orientation) = from_mesh(shape, &own, target);
-        let back = own.closest_many(&target.probes);
+        let back = distances(&own, &target.probes);
+        drop(own);
         let ref_to_mesh = OneWay::new(&back, target.sample_count, diagonal);
         let angle = target.options.feature_angle_deg;
         Ok(Self {
@@ -132,27 +133,36 @@ impl ReferenceMetrics {
 fn from_mesh(shape: &Shape, own: &Reference, target: &Target) -> (MeshToReference, Orientation) {
     let mut probes = own.samples(target.options.samples as usize);
     let samples = probes.len();
-    probes.extend(used_points(shape.mesh));
-    let vertices = samples..probes.len();
-    probes.extend_from_slice(&shape.centres);
-    let hits = target.surface.closest_many(&probes);
+    probes.extend(used_points(shape.mesh, own));
+    let mut all = distances(&target.surface, &probes);
     let diagonal = target.surface.diagonal();
-    let distances = MeshToReference {
-        surface: OneWay::new(&hits, samples, diagonal),
-        vertices_max: farthest(&hits[vertices.clone()]) / diagonal,
-    };
-    (distances, Orientation::new(shape, &target.surface, &hits[vertices.end..]))
+    let vertices_max = farthest(&all[samples..]) / diagonal;
+    let mut triangles = Vec::with_capacity(shape.centres.len());
+    target.surface.closest_each(&shape.centres, &mut Vec::new(), |_, hit| {
+        all.push(hit.distance);
+        triangles.push(hit.triangle);
+    });
+    let surface = OneWay::new(&all, samples, diagonal);
+    let orientation = Orientation::new(shape, &target.surface, &triangles);
+    (MeshToReference { surface, vertices_max }, orientation)
+}
+
+/// How far points are from a surface.
+fn distances(surface: &Reference, points: &[Point]) -> Vec<f64> {
+    let mut distances = Vec::with_capacity(points.len());
+    surface.closest_each(points, &mut Vec::new(), |_, hit| distances.push(hit.distance));
+    distances
 }
 
 impl OneWay {
-    /// The first `samples` hits are samples; the others count for the maximum only.
-    fn new(hits: &[Hit], samples: usize, diagonal: f64) -> Self {
-        let sampled = &hits[..samples];
+    /// The first `samples` distances are those of samples; the others count for the maximum only.
+    fn new(distances: &[f64], samples: usize, diagonal: f64) -> Self {
+        let sampled = &distances[..samples];
         let count = samples.max(1) as f64;
-        let sum: f64 = sampled.iter().map(|h| h.distance).sum();
-        let squares: f64 = sampled.iter().map(|h| h.distance * h.distance).sum();
+        let sum: f64 = sampled.iter().sum();
+        let squares: f64 = sampled.iter().map(|d| d * d).sum();
         Self {
-            hausdorff: farthest(hits) / diagonal,
+            hausdorff: farthest(distances) / diagonal,
             rms: (squares / count).sqrt() / diagonal,
             mean: sum / count / diagonal,
         }
@@ -160,8 +170,9 @@ impl OneWay {
 }
 
 impl Orientation {
-    fn new(shape: &Shape, surface: &Reference, at_centres: &[Hit]) -> Self {
-        let alike = |(n, hit): (&crate::mesh::Vector, &Hit)| n.dot(surface.normal(hit.triangle));
+    /// `at_centres` has the triangle of `surface` that is nearest to the centre of each face.
+    fn new(shape: &Shape, surface: &Reference, at_centres: &[u32]) -> Self {
+        let alike = |(n, &t): (&crate::mesh::Vector, &u32)| n.dot(surface.normal(t));
         let cosines: Vec<f64> = shape.normals.iter().zip(at_centres).map(alike).collect();
         // The normal of a face without area is NaN: such a face looks nowhere and counts as well.
         let right = cosines.iter().filter(|&&c| c >= 0.0).count();
@@ -175,12 +186,15 @@ impl Orientation {
     }
 }
 
-fn farthest(hits: &[Hit]) -> f64 {
-    hits.iter().map(|h| h.distance).fold(0.0, f64::max)
+fn farthest(distances: &[f64]) -> f64 {
+    distances.iter().copied().fold(0.0, f64::max)
 }
 
-/// Points that faces use, by number.
-fn used_points(mesh: &PolyMesh) -> impl Iterator<Item = Point> + '_ {
-    let used = connectivity::used_vertices(mesh);
-    mesh.points().iter().zip(used).filter_map(|(p, used)| used.then_some(*p))
+/// Points that faces of `mesh` use: first those of its `surface` in the order of that, in which
+/// neighbours are near each other.
+fn used_points(mesh: &PolyMesh, surface: &Reference) -> Vec<Point> {
+    let mut left = connectivity::used_vertices(mesh);
+    let mut take = |v: usize| std::mem::take(left.get_mut(v)?).then(|| mesh.points()[v]);
+    let corners = surface.triangles().iter().flatten().map(|&v| v as usize);
+    corners.chain(0..mesh.vertex_count()).filter_map(|v| take(v)).collect()
 }

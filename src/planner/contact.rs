@@ -50,22 +50,47 @@ impl Contact {
     pub fn attach(&mut self, mesh: &QuadMesh, reference: &Reference) -> Result<(), MeshError> {
         let polygons = lower(mesh, &[String::new()])?;
         self.attach_vertices(mesh, &polygons, reference);
+        let Ok(surface) = Reference::plain(&polygons.mesh) else {
+            self.first.clear();
+            return Ok(());
+        };
+        let mut near = self.near_probes(mesh, &polygons, &surface);
         self.first.clear();
         self.first.resize(mesh.vertex_ids() as usize, NONE);
-        let Ok(surface) = Reference::plain(&polygons.mesh) else { return Ok(()) };
-        for (i, hit) in surface.closest_many(&self.points).into_iter().enumerate() {
+        let points = std::mem::take(&mut self.points);
+        surface.closest_each(&points, &mut near, |i, hit| {
             let face = polygons.face_ids[surface.faces()[hit.triangle as usize] as usize];
             self.put(i as u32, face, hit.distance);
-        }
+        });
+        self.points = points;
         Ok(())
     }
 
+    /// A triangle of `surface` near each probe: of the face that it was at until now.
+    fn near_probes(&self, mesh: &QuadMesh, polygons: &Lowered, surface: &Reference) -> Vec<u32> {
+        let mut triangle = vec![NONE; mesh.vertex_ids() as usize];
+        for (t, &f) in surface.faces().iter().enumerate() {
+            triangle[polygons.face_ids[f as usize] as usize] = t as u32;
+        }
+        let mut near = vec![NONE; self.points.len()];
+        for (&first, &triangle) in self.first.iter().zip(&triangle) {
+            let mut probe = first;
+            while probe != NONE {
+                near[probe as usize] = triangle;
+                probe = self.next[probe as usize];
+            }
+        }
+        near
+    }
+
     fn attach_vertices(&mut self, mesh: &QuadMesh, polygons: &Lowered, reference: &Reference) {
+        let known = |&v: &Vertex| self.near(v).unwrap_or(NONE);
+        let mut near: Vec<u32> = polygons.vertex_ids.iter().map(known).collect();
+        reference.closest_each(polygons.mesh.points(), &mut near, |_, _| ());
         self.near.clear();
         self.near.resize(mesh.vertex_ids() as usize, NONE);
-        let hits = reference.closest_many(polygons.mesh.points());
-        for (&v, hit) in polygons.vertex_ids.iter().zip(hits) {
-            self.near[v as usize] = hit.triangle;
+        for (&v, near) in polygons.vertex_ids.iter().zip(near) {
+            self.near[v as usize] = near;
         }
     }
 

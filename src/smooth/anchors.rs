@@ -5,8 +5,8 @@
 //! mesh pull the corners of the face that is nearest to them.
 
 use super::kernel::{Kernel, Target};
-use crate::mesh::{Point, PolyMesh};
-use crate::surface::Reference;
+use crate::mesh::{NONE, Point, PolyMesh};
+use crate::surface::{Reference, spread};
 
 /// Weight of a pull in units of the weight of all faces of a vertex.
 const PULL: f64 = 1.0;
@@ -14,22 +14,37 @@ const PULL: f64 = 1.0;
 /// Places of the reference that are watched: about `count` by area, and at most twice as many of
 /// its vertices, among which are the tips of horns. O(triangles).
 pub(crate) fn watched(reference: &Reference, count: usize) -> Vec<Point> {
-    let mut used: Vec<u32> = reference.triangles().iter().flatten().copied().collect();
-    used.sort_unstable();
-    used.dedup();
-    let stride = used.len().div_ceil(2 * count.max(1)).max(1);
     let mut places = reference.samples(count);
-    places.extend(used.iter().step_by(stride).map(|&v| reference.points()[v as usize]));
+    places.extend(spread(reference.used_points(), 2 * count));
     places
 }
 
-/// Lets every watched place farther than `far` from `mesh` pull; how many there are.
-pub(super) fn pull(kernel: &mut Kernel, mesh: &PolyMesh, places: &[Point], far: f64) -> usize {
+/// Places of the reference that are watched, each with a triangle of the mesh that covered it.
+pub(super) struct Watched {
+    places: Vec<Point>,
+    near: Vec<u32>,
+}
+
+impl Watched {
+    /// About `count` places, see [`watched`].
+    pub(super) fn new(reference: &Reference, count: usize) -> Self {
+        let places = watched(reference, count);
+        Self { near: vec![NONE; places.len()], places }
+    }
+}
+
+/// Lets every watched place farther than `far` from `surface`, which is that of `mesh`, pull; how
+/// many there are.
+pub(super) fn pull(
+    kernel: &mut Kernel,
+    (mesh, surface): (&PolyMesh, &Reference),
+    watched: &mut Watched,
+    far: f64,
+) -> usize {
     kernel.pulls.clear();
-    let Ok(surface) = Reference::plain(mesh) else { return 0 };
     // A root may round either way: what is about as far as that is measured.
-    let lost = surface.farther_than(places, far * (1.0 - 1e-12));
-    let lost: Vec<Point> = lost.into_iter().map(|i| places[i as usize]).collect();
+    let lost = surface.farther_than(&watched.places, far * (1.0 - 1e-12), &mut watched.near);
+    let lost: Vec<Point> = lost.into_iter().map(|i| watched.places[i as usize]).collect();
     let hits = surface.closest_many(&lost);
     let mut count = 0;
     for (place, hit) in lost.iter().zip(&hits).filter(|(_, h)| h.distance > far) {

@@ -2,10 +2,10 @@
 
 use fixedbitset::FixedBitSet;
 
-use super::anchors::{pull, watched};
-use super::guard::{Budget, Finding, Guard, Limits, Mending};
+use super::anchors::{Watched, pull, watched};
+use super::guard::{Budget, Finding, Guard, Limits, Mending, Trace};
 use super::kernel::Setting;
-use super::region::{Orientation, Region, at_centres, vote};
+use super::region::{Orientation, Region, vote};
 use super::untangle::untangle;
 use super::{RelaxOptions, SmoothOptions};
 use crate::mesh::{NONE, Point, PolyMesh, Topology};
@@ -128,6 +128,7 @@ struct Work<'a> {
     mesh: PolyMesh,
     original: &'a PolyMesh,
     guard: Guard<'a>,
+    trace: Trace,
     limits: Limits,
     start: Finding,
     region: Region,
@@ -143,14 +144,16 @@ impl<'a> Work<'a> {
         (options, relax): (&'a SmoothOptions, &RelaxOptions),
         budget: Option<Budget>,
     ) -> Self {
-        let centres = at_centres(mesh, reference);
-        let side = vote(mesh, reference, &centres);
+        let mut trace = Trace::new(mesh);
+        let centres = trace.at_centres(mesh, reference);
+        let side = vote(mesh, reference, centres.iter().enumerate());
         let (stress, project_every) = (options.stress, options.project_every);
         let relax = RelaxOptions { stress, project_every, ..relax.clone() };
         let samples = mesh.vertex_count().clamp(20_000, 200_000);
         let places = watched(reference, samples);
         let guard = Guard { reference, places, samples, sign: side.sign() };
-        let start = guard.check_at(mesh, &centres);
+        let start = guard.check_at(mesh, &centres, &mut trace);
+        drop(centres);
         let limits = limits(&start, options, budget, reference.diagonal());
         let setting = Setting::new(&relax, side.sign(), true);
         let mut region = filled(mesh, held, side);
@@ -161,6 +164,7 @@ impl<'a> Work<'a> {
             mesh: mesh.clone(),
             original: mesh,
             guard,
+            trace,
             limits,
             start,
             region,
@@ -174,7 +178,7 @@ impl<'a> Work<'a> {
     fn iterate(&mut self, watch: &dyn Watch) -> bool {
         let (total, hurried) = (self.options.iterations, self.options.hurried);
         let round = if self.options.anchor_every == 0 { total } else { self.options.anchor_every };
-        let places = watched(self.guard.reference, self.mesh.vertex_count());
+        let mut places = Watched::new(self.guard.reference, self.mesh.vertex_count());
         let stops = |done: u32| done >= hurried && watch.cancelled();
         let mut done = 0;
         while done < total && !stops(done) {
@@ -191,7 +195,10 @@ impl<'a> Work<'a> {
                 let points = kernel.vertices.iter().map(|v| v.point).collect();
                 self.mesh.set_points(points);
                 let far = self.options.anchor_share * self.limits.budget.hausdorff;
-                pull(kernel, &self.mesh, &places, far);
+                self.trace.follow(&self.mesh);
+                if let Some(surface) = &self.trace.surface {
+                    pull(kernel, (&self.mesh, surface), &mut places, far);
+                }
             }
         }
         hurried > 0 || !watch.cancelled()
@@ -211,7 +218,7 @@ impl<'a> Work<'a> {
         let kernel = &self.region.kernel;
         let smoothed = self.mesh.points().to_vec();
         let mut mending = Mending::new(self.original.points().to_vec(), smoothed);
-        let mut found = self.guard.check(&self.mesh);
+        let mut found = self.guard.check_again(&self.mesh, &mut self.trace);
         let mut broken = found.broken(&self.start, &self.limits);
         for _ in 0..self.options.mend_rounds {
             if broken.is_empty() {
@@ -220,7 +227,7 @@ impl<'a> Work<'a> {
             mending.lower(&self.mesh, &broken);
             let points = mending.blend(kernel, self.guard.reference, self.setting.sign);
             self.mesh.set_points(points);
-            found = self.guard.check(&self.mesh);
+            found = self.guard.check_again(&self.mesh, &mut self.trace);
             broken = found.broken(&self.start, &self.limits);
         }
         if broken.is_empty() {

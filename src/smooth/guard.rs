@@ -5,9 +5,9 @@
 //! way back to where they were; after a few rounds they are back altogether.
 
 use super::kernel::Kernel;
-use super::region::at_centres;
 use crate::mesh::{Point, PolyMesh, Vector};
 use crate::surface::{Deviation, Hit, Reference};
+use rayon::prelude::*;
 
 /// How far the mesh may be from the reference, both ways, in units of the file.
 pub type Budget = Deviation;
@@ -49,17 +49,62 @@ pub(crate) struct Limits {
     pub(crate) jacobian: f64,
 }
 
+/// A mesh in work as a surface, and the triangles that were found when it was last measured: they
+/// are near those that will be found next time.
+#[derive(Debug)]
+pub(super) struct Trace {
+    /// None if no face has an area.
+    pub(super) surface: Option<Reference>,
+    /// Triangle of the reference at the centre of each face, and at each sample of the mesh.
+    centres: Vec<u32>,
+    samples: Vec<u32>,
+    /// Triangle of the surface at each place of the reference.
+    places: Vec<u32>,
+}
+
+impl Trace {
+    /// Nothing is known yet of `mesh` but its surface.
+    pub(super) fn new(mesh: &PolyMesh) -> Self {
+        let surface = Reference::plain(mesh).ok();
+        Self { surface, centres: Vec::new(), samples: Vec::new(), places: Vec::new() }
+    }
+
+    /// Follows the mesh to where its points are now.
+    pub(super) fn follow(&mut self, mesh: &PolyMesh) {
+        let surface = self.surface.take();
+        self.surface = surface.map_or_else(|| Reference::plain(mesh), |s| s.moved(mesh)).ok();
+    }
+
+    /// Where on the reference the centre of each face is.
+    pub(super) fn at_centres(&mut self, mesh: &PolyMesh, reference: &Reference) -> Vec<Hit> {
+        let centres: Vec<Point> =
+            (0..mesh.face_count()).into_par_iter().map(|f| mesh.centre(f)).collect();
+        let mut hits = Vec::with_capacity(centres.len());
+        reference.closest_each(&centres, &mut self.centres, |_, hit| hits.push(*hit));
+        hits
+    }
+}
+
 impl Guard<'_> {
     /// Measures `mesh`. O(n log n), parallel.
     pub(crate) fn check(&self, mesh: &PolyMesh) -> Finding {
-        self.check_at(mesh, &at_centres(mesh, self.reference))
+        let mut trace = Trace::new(mesh);
+        let centres = trace.at_centres(mesh, self.reference);
+        self.check_at(mesh, &centres, &mut trace)
+    }
+
+    /// Measures `mesh`, which may have moved since `trace` followed it last.
+    pub(super) fn check_again(&self, mesh: &PolyMesh, trace: &mut Trace) -> Finding {
+        trace.follow(mesh);
+        let centres = trace.at_centres(mesh, self.reference);
+        self.check_at(mesh, &centres, trace)
     }
 
     /// Measures a mesh whose faces have their centres at `centres` of the reference.
-    pub(super) fn check_at(&self, mesh: &PolyMesh, centres: &[Hit]) -> Finding {
+    pub(super) fn check_at(&self, mesh: &PolyMesh, centres: &[Hit], trace: &mut Trace) -> Finding {
         let n = mesh.face_count();
         let jacobian: Vec<f64> =
-            mesh.faces().map(|face| scaled_jacobian(mesh.points(), face)).collect();
+            (0..n).into_par_iter().map(|f| scaled_jacobian(mesh.points(), mesh.face(f))).collect();
         let mut found = Finding {
             deviation: Deviation::default(),
             least_jacobian: jacobian.iter().copied().fold(1.0, f64::min),
@@ -68,39 +113,47 @@ impl Guard<'_> {
             far: vec![0.0; n],
             load: vec![0.0; n],
         };
-        if let Ok(surface) = Reference::plain(mesh) {
-            let away = self.away(&surface, &mut found);
-            let back = self.back(&surface, &mut found);
+        if let Some(surface) = trace.surface.take() {
+            let away = self.away(&surface, &mut trace.samples, &mut found);
+            let back = self.back(&surface, &mut trace.places, &mut found);
             self.centres(mesh, centres, &mut found);
             let hausdorff = found.far.iter().copied().fold(0.0, f64::max);
             found.deviation = Deviation { hausdorff, rms: away.max(back).sqrt() };
+            trace.surface = Some(surface);
         }
         found
     }
 
     /// Mean square distance of samples of the mesh to the reference.
-    fn away(&self, surface: &Reference, found: &mut Finding) -> f64 {
+    fn away(&self, surface: &Reference, near: &mut Vec<u32>, found: &mut Finding) -> f64 {
         let own = surface.sample_places(self.samples);
         let queries: Vec<Point> = own.iter().map(|s| s.1).collect();
-        let hits = self.reference.closest_many(&queries);
-        let faces = own.iter().map(|s| surface.faces()[s.0 as usize]);
-        found.note(faces.zip(hits.iter().map(|h| h.distance)), own.len())
+        let face = |i: usize| surface.faces()[own[i].0 as usize];
+        let share = 1.0 / own.len().max(1) as f64;
+        let mut sum = 0.0;
+        self.reference.closest_each(&queries, near, |i, hit| {
+            sum += found.note(face(i), hit.distance, share);
+        });
+        sum
     }
 
     /// Mean square distance of samples of the reference to the mesh; its vertices count for
     /// the largest distance only.
-    fn back(&self, surface: &Reference, found: &mut Finding) -> f64 {
-        let hits = surface.closest_many(&self.places);
-        let at = |h: &Hit| (surface.faces()[h.triangle as usize], h.distance);
-        let count = self.samples.min(hits.len());
-        found.note(hits[count..].iter().map(at), 0);
-        found.note(hits[..count].iter().map(at), count)
+    fn back(&self, surface: &Reference, near: &mut Vec<u32>, found: &mut Finding) -> f64 {
+        let count = self.samples.min(self.places.len());
+        let share = 1.0 / count.max(1) as f64;
+        let mut sum = 0.0;
+        surface.closest_each(&self.places, near, |i, hit| {
+            let face = surface.faces()[hit.triangle as usize];
+            sum += found.note(face, hit.distance, if i < count { share } else { 0.0 });
+        });
+        sum
     }
 
     /// Distances and sides of the centres of the faces.
     fn centres(&self, mesh: &PolyMesh, hits: &[Hit], found: &mut Finding) {
-        found.note((0..).zip(hits.iter().map(|h| h.distance)), 0);
         for (f, hit) in hits.iter().enumerate() {
+            found.note(f as u32, hit.distance, 0.0);
             let normal = self.reference.normal(hit.triangle) * self.sign;
             found.flipped[f] = mesh.area_vector(f).dot(&normal) < 0.0;
         }
@@ -108,16 +161,13 @@ impl Guard<'_> {
 }
 
 impl Finding {
-    /// Notes distances at faces; their mean square over `count` samples, if there are any.
-    fn note(&mut self, distances: impl Iterator<Item = (u32, f64)>, count: usize) -> f64 {
-        let mut sum = 0.0;
-        let share = if count > 0 { 1.0 / count as f64 } else { 0.0 };
-        for (f, d) in distances {
-            self.far[f as usize] = self.far[f as usize].max(d);
-            self.load[f as usize] += d * d * share;
-            sum += d * d * share;
-        }
-        sum
+    /// Notes the distance of a sample at a face that is such a share of all samples, or none; its
+    /// part in their mean square.
+    fn note(&mut self, f: u32, distance: f64, share: f64) -> f64 {
+        let part = distance * distance * share;
+        self.far[f as usize] = self.far[f as usize].max(distance);
+        self.load[f as usize] += part;
+        part
     }
 
     /// Faces that break a limit, ascending; if the mean square does, those that have added most
@@ -213,7 +263,7 @@ impl Mending {
             let normal: Vector = vertex.normal * sign;
             reference.closest_facing(&between, &normal, vertex.last, reach).point
         };
-        (0..self.keep.len()).map(place).collect()
+        (0..self.keep.len()).into_par_iter().map(place).collect()
     }
 }
 

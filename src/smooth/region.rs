@@ -26,23 +26,27 @@ impl Orientation {
     }
 }
 
-/// Decides by vote of all faces, by area, how `mesh` is oriented. O(n log n), parallel.
+/// Faces beyond which only some have a vote.
+const VOTERS: usize = 20_000;
+
+/// Decides by vote of the faces (of many, some), by area, how `mesh` is oriented. O(log n),
+/// parallel.
 #[must_use]
 pub fn orientation(mesh: &PolyMesh, reference: &Reference) -> Orientation {
-    vote(mesh, reference, &at_centres(mesh, reference))
+    let every = mesh.face_count().div_ceil(VOTERS).max(1);
+    let voters: Vec<usize> = (0..mesh.face_count()).step_by(every).collect();
+    let centres: Vec<Point> = voters.iter().map(|&f| mesh.centre(f)).collect();
+    vote(mesh, reference, voters.into_iter().zip(&reference.closest_many(&centres)))
 }
 
-/// Where on the reference the centre of each face is. O(n log n), parallel.
-pub(super) fn at_centres(mesh: &PolyMesh, reference: &Reference) -> Vec<Hit> {
-    let centres: Vec<Point> = (0..mesh.face_count()).map(|f| mesh.centre(f)).collect();
-    reference.closest_many(&centres)
-}
-
-/// The orientation, when that is known.
-pub(super) fn vote(mesh: &PolyMesh, reference: &Reference, hits: &[Hit]) -> Orientation {
-    let vote = |(f, t): (usize, u32)| mesh.area_vector(f).dot(reference.normal(t));
-    let sum: f64 = hits.iter().map(|h| h.triangle).enumerate().map(vote).sum();
-    if sum < 0.0 { Orientation::Against } else { Orientation::Along }
+/// The orientation, when it is known where on the reference some faces are.
+pub(super) fn vote<'h>(
+    mesh: &PolyMesh,
+    reference: &Reference,
+    hits: impl Iterator<Item = (usize, &'h Hit)>,
+) -> Orientation {
+    let vote = |(f, hit): (usize, &Hit)| mesh.area_vector(f).dot(reference.normal(hit.triangle));
+    if hits.map(vote).sum::<f64>() < 0.0 { Orientation::Against } else { Orientation::Along }
 }
 
 /// Faces and vertices of a part of a mesh, with all the memory that relaxing them takes.

@@ -120,8 +120,11 @@ impl SharpLines {
             return;
         }
         // A segment is a triangle with a double corner.
-        let flat: Vec<[Point; 3]> = self.segments.iter().map(|&[a, b]| [a, b, b]).collect();
-        let (tree, order) = Tree::build(&flat);
+        let flat = |s: u32| {
+            let [a, b] = self.segments[s as usize];
+            [a, b, b]
+        };
+        let (tree, order) = Tree::build(self.segments.len(), flat);
         self.segments = order.iter().map(|&s| self.segments[s as usize]).collect();
         self.chain = order.iter().map(|&s| self.chain[s as usize]).collect();
         self.tree = Some(tree);

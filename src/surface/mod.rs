@@ -17,6 +17,7 @@ pub use features::{
     Crease, FeatureOptions, SharpLines, mean_edge, mesh_features, vertices_on_lines,
 };
 pub use reference::{Hit, Reference, SurfaceError};
+pub(crate) use samples::spread;
 pub use samples::{Deviation, deviation, sample_triangles};
 pub use triangulation::{Triangulation, triangulate};
 

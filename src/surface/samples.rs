@@ -4,8 +4,6 @@
 //! two-dimensional additive sequence of Roberts (*The unreasonable effectiveness of
 //! quasirandom sequences*, 2018); nothing is random.
 
-use rayon::prelude::*;
-
 use super::reference::Reference;
 use crate::mesh::Point;
 
@@ -58,7 +56,10 @@ pub struct Deviation {
     pub rms: f64,
 }
 
-/// Distances from samples and vertices of each surface to the other. `count` samples each way.
+/// Corners of a surface beyond which only some are looked at.
+const MOST_CORNERS: usize = 200_000;
+
+/// Distances from samples and vertices (of many, some) of each surface to the other. `count` samples each way.
 /// O((count + vertices) log n), in parallel; independent of the number of threads.
 #[must_use]
 pub fn deviation(surface: &Reference, other: &Reference, count: usize) -> Deviation {
@@ -66,23 +67,28 @@ pub fn deviation(surface: &Reference, other: &Reference, count: usize) -> Deviat
     Deviation { hausdorff: there.hausdorff.max(back.hausdorff), rms: there.rms.max(back.rms) }
 }
 
+/// At most so many of some points, evenly spread over their order.
+pub(crate) fn spread(mut points: Vec<Point>, most: usize) -> Vec<Point> {
+    let every = points.len().div_ceil(most.max(1)).max(1);
+    let mut number = 0;
+    points.retain(|_| {
+        number += 1;
+        (number - 1) % every == 0
+    });
+    points
+}
+
 /// Distances from samples and corners of `from` to `to`.
 fn one_way(from: &Reference, to: &Reference, count: usize) -> Deviation {
-    let distances: Vec<f64> =
-        to.closest_many(&from.samples(count)).iter().map(|h| h.distance).collect();
-    let corners: Vec<Point> = {
-        let mut used: Vec<u32> = from.triangles().iter().flatten().copied().collect();
-        used.sort_unstable();
-        used.dedup();
-        used.iter().map(|&v| from.points()[v as usize]).collect()
-    };
-    let at_corners =
-        to.closest_many(&corners).par_iter().map(|h| h.distance).reduce(|| 0.0, f64::max);
-    let squares: f64 = distances.iter().map(|d| d * d).sum();
-    Deviation {
-        hausdorff: distances.iter().copied().fold(at_corners, f64::max),
-        rms: (squares / distances.len().max(1) as f64).sqrt(),
-    }
+    let (mut far, mut squares) = (0.0, 0.0);
+    let samples = from.samples(count);
+    to.closest_each(&samples, &mut Vec::new(), |_, hit| {
+        far = hit.distance.max(far);
+        squares += hit.distance * hit.distance;
+    });
+    let corners = spread(from.used_points(), MOST_CORNERS);
+    to.closest_each(&corners, &mut Vec::new(), |_, hit| far = hit.distance.max(far));
+    Deviation { hausdorff: far, rms: (squares / samples.len().max(1) as f64).sqrt() }
 }
 
 #[cfg(test)]

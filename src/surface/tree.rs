@@ -79,17 +79,39 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// Builds the tree over at least one triangle, in O(n log n), parallel; also returns the order in
-    /// which it stores the triangles, which is spatially coherent.
-    pub(super) fn build(triangles: &[[Point; 3]]) -> (Self, Vec<u32>) {
-        let frame = Frame::new(triangles);
-        let boxes: Vec<Bounds> = triangles.par_iter().map(|t| frame.bounds(t)).collect();
-        let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
-        let mut nodes = vec![Node::EMPTY; node_count(order.len())];
-        let whole = Part { nodes: &mut nodes, number: 0, order: &mut order, start: 0 };
-        Builder { boxes: &boxes }.build(whole);
-        let triangles = order.par_iter().map(|&t| triangles[t as usize]).collect();
-        (Self { nodes, triangles, frame }, order)
+    /// Builds the tree over `count` triangles, at least one, with the corners that `corners` gives,
+    /// in O(n log n), parallel; also returns the order in which it stores them, which is spatially
+    /// coherent.
+    pub(super) fn build(
+        count: usize,
+        corners: impl Fn(u32) -> [Point; 3] + Sync,
+    ) -> (Self, Vec<u32>) {
+        let numbers = || (0..count as u32).into_par_iter();
+        let frame = Frame::new(count, &corners);
+        let item =
+            |t: u32| Item { centre: frame.bounds(&corners(t)).doubled_centre(), triangle: t };
+        let mut items: Vec<Item> = numbers().map(item).collect();
+        sort(&mut items);
+        let order: Vec<u32> = items.into_iter().map(|item| item.triangle).collect();
+        let triangles = order.par_iter().map(|&t| corners(t)).collect();
+        let mut tree = Self { nodes: vec![Node::EMPTY; node_count(count)], triangles, frame };
+        tree.fill();
+        (tree, order)
+    }
+
+    /// Lets the triangles, which keep their order, have other corners. The tree is then as right as
+    /// one that is built anew, and as fast as long as neighbours stay neighbours. O(n), parallel.
+    pub(super) fn follow(&mut self, corners: impl Fn(u32) -> [Point; 3] + Sync) {
+        self.frame = Frame::new(self.triangles.len(), &corners);
+        let moved = |(t, triangle): (usize, &mut [Point; 3])| *triangle = corners(t as u32);
+        self.triangles.par_iter_mut().enumerate().for_each(moved);
+        self.fill();
+    }
+
+    /// Fills the nodes from the triangles.
+    fn fill(&mut self) {
+        let Self { nodes, triangles, frame } = self;
+        Part { nodes, number: 0, triangles, start: 0 }.fill(frame);
     }
 
     /// The corners of triangle `t`.
@@ -114,6 +136,7 @@ impl Tree {
         enough: f64,
     ) -> Best {
         let place = self.frame.place(query);
+        let known = best.triangle;
         let mut bound = self.frame.bound(best.squared);
         let mut stack = [(0u32, 0.0f32); STACK];
         let mut top = 1;
@@ -125,6 +148,9 @@ impl Tree {
             }
             if code & LEAF_BIT != 0 {
                 let t = code & !LEAF_BIT;
+                if t == known {
+                    continue;
+                }
                 let (squared, point) = self.at(t, query);
                 if (squared, t) < (best.squared, best.triangle) && accept(t) {
                     best = Best { squared, triangle: t, point };
@@ -200,10 +226,13 @@ struct Frame {
 }
 
 impl Frame {
-    fn new(triangles: &[[Point; 3]]) -> Self {
-        let first = triangles[0][0];
-        let corners = triangles.iter().flatten();
-        let (lo, hi) = corners.fold((first, first), |(lo, hi), p| (lo.inf(p), hi.sup(p)));
+    fn new(count: usize, corners: impl Fn(u32) -> [Point; 3] + Sync) -> Self {
+        let first = corners(0)[0];
+        let wider = |(lo, hi): (Point, Point), p: &Point| (lo.inf(p), hi.sup(p));
+        let (lo, hi) = (0..count as u32)
+            .into_par_iter()
+            .fold(|| (first, first), |all, t| corners(t).iter().fold(all, wider))
+            .reduce(|| (first, first), |all, (lo, hi)| wider(wider(all, &lo), &hi));
         let centre = lo + (hi - lo) * 0.5;
         let scale = 1.0 / (hi - centre).amax();
         Self { centre, scale: if scale.is_normal() { scale } else { 1.0 } }
@@ -284,51 +313,92 @@ fn node_count(count: usize) -> usize {
     1 + quarters.as_flattened().iter().filter(|&&n| n > 1).map(|&n| node_count(n)).sum::<usize>()
 }
 
-struct Builder<'a> {
-    boxes: &'a [Bounds],
+/// A triangle that is to be put in order. What a split compares lies side by side, so that nothing
+/// has to be looked up all over the memory.
+#[derive(Debug, Clone, Copy)]
+struct Item {
+    /// Twice the centre of its box.
+    centre: [f32; 3],
+    triangle: u32,
 }
 
-/// A part of the tree that is to be built.
+impl Item {
+    /// Ordered as the place along an axis is (by `f32::total_cmp`), then as the triangle.
+    fn key(&self, axis: usize) -> i64 {
+        let bits = self.centre[axis].to_bits().cast_signed();
+        let place = bits ^ ((bits >> 31).cast_unsigned() >> 1).cast_signed();
+        (i64::from(place) << 32) | i64::from(self.triangle)
+    }
+}
+
+/// Puts triangles in the order in which a tree stores them.
+fn sort(items: &mut [Item]) {
+    if items.len() > 1 {
+        let many = items.len() > TOGETHER;
+        let (left, right) = halve(items);
+        both(many, || sort(left), || sort(right));
+    }
+}
+
+/// Splits triangles in the middle of the axis along which they are spread most.
+fn halve(items: &mut [Item]) -> (&mut [Item], &mut [Item]) {
+    let middle = first_half(items.len());
+    if middle < items.len() {
+        let axis = widest_axis(items);
+        items.select_nth_unstable_by_key(middle, |item| item.key(axis));
+    }
+    items.split_at_mut(middle)
+}
+
+fn widest_axis(items: &[Item]) -> usize {
+    let centres = items.iter().map(|item| Bounds { lo: item.centre, hi: item.centre });
+    let range = centres.fold(Bounds::NONE, |range, centre| range.with(&centre));
+    let extent = |k: usize| range.hi[k] - range.lo[k];
+    (1..3).fold(0, |best, k| if extent(k) > extent(best) { k } else { best })
+}
+
+/// A part of the tree whose nodes are to be filled.
 struct Part<'a> {
     /// Its nodes.
     nodes: &'a mut [Node],
     /// Number of the first one.
     number: usize,
-    /// Its triangles.
-    order: &'a mut [u32],
-    /// Place of the first one in the whole order.
+    /// Its triangles, in order.
+    triangles: &'a [[Point; 3]],
+    /// Number of the first one.
     start: usize,
 }
 
-impl Builder<'_> {
-    /// Fills the nodes of a part and puts its triangles in order; its bounds.
-    fn build(&self, part: Part) -> Bounds {
-        let Part { nodes, number, order, start } = part;
-        let many = order.len() > TOGETHER;
-        let (left, right) = self.halve(order);
-        let ((a, b), (c, d)) = both(many, || self.halve(left), || self.halve(right));
+impl Part<'_> {
+    /// Fills the nodes; the bounds of all.
+    fn fill(self, frame: &Frame) -> Bounds {
+        let Part { nodes, number, triangles, start } = self;
+        let many = triangles.len() > TOGETHER;
+        let halves = triangles.split_at(first_half(triangles.len()));
+        let [(a, b), (c, d)] =
+            [halves.0, halves.1].map(|half| half.split_at(first_half(half.len())));
         let Some((node, mut nodes)) = nodes.split_first_mut() else { return Bounds::NONE };
         *node = Node::EMPTY;
         let (mut number, mut start) = (number + 1, start);
         let mut codes = [0; WIDTH];
-        let parts = [a, b, c, d].map(|order| {
-            let count = if order.len() > 1 { node_count(order.len()) } else { 0 };
+        let parts = [a, b, c, d].map(|triangles| {
+            let count = if triangles.len() > 1 { node_count(triangles.len()) } else { 0 };
             let (own, rest) = std::mem::take(&mut nodes).split_at_mut(count);
             nodes = rest;
-            let part = Part { nodes: own, number, order, start };
-            (number, start) = (number + count, start + part.order.len());
+            let part = Part { nodes: own, number, triangles, start };
+            (number, start) = (number + count, start + triangles.len());
             part
         });
         for (code, part) in codes.iter_mut().zip(&parts) {
             let leaf = LEAF_BIT | part.start as u32;
-            *code = if part.order.len() == 1 { leaf } else { part.number as u32 };
+            *code = if part.triangles.len() == 1 { leaf } else { part.number as u32 };
         }
-        let sizes = [0, 1, 2, 3].map(|k| parts[k].order.len());
+        let sizes = [0, 1, 2, 3].map(|k| parts[k].triangles.len());
         let [a, b, c, d] = parts;
         let ((a, b), (c, d)) = both(
             many,
-            || both(many, || self.bounds(a), || self.bounds(b)),
-            || both(many, || self.bounds(c), || self.bounds(d)),
+            || both(many, || a.bounds(frame), || b.bounds(frame)),
+            || both(many, || c.bounds(frame), || d.bounds(frame)),
         );
         let mut whole = Bounds::NONE;
         for (side, bounds) in [a, b, c, d].into_iter().enumerate().filter(|&(k, _)| sizes[k] > 0) {
@@ -338,35 +408,13 @@ impl Builder<'_> {
         whole
     }
 
-    /// The bounds of a part, which is built if it is more than a triangle.
-    fn bounds(&self, part: Part) -> Bounds {
-        match *part.order {
+    /// The bounds of a part, which is filled if it is more than a triangle.
+    fn bounds(self, frame: &Frame) -> Bounds {
+        match self.triangles {
             [] => Bounds::NONE,
-            [t] => self.boxes[t as usize],
-            _ => self.build(part),
+            [t] => frame.bounds(t),
+            _ => self.fill(frame),
         }
-    }
-
-    /// Splits triangles in the middle of the axis along which they are spread most.
-    fn halve<'o>(&self, order: &'o mut [u32]) -> (&'o mut [u32], &'o mut [u32]) {
-        let middle = first_half(order.len());
-        if middle < order.len() {
-            let axis = self.widest_axis(order);
-            let key = |t: u32| self.boxes[t as usize].doubled_centre()[axis];
-            let by_place = |&a: &u32, &b: &u32| key(a).total_cmp(&key(b)).then(a.cmp(&b));
-            order.select_nth_unstable_by(middle, by_place);
-        }
-        order.split_at_mut(middle)
-    }
-
-    fn widest_axis(&self, order: &[u32]) -> usize {
-        let mut range = Bounds::NONE;
-        for &t in order {
-            let centre = self.boxes[t as usize].doubled_centre();
-            range = range.with(&Bounds { lo: centre, hi: centre });
-        }
-        let extent = |k: usize| range.hi[k] - range.lo[k];
-        (1..3).fold(0, |best, k| if extent(k) > extent(best) { k } else { best })
     }
 }
 
