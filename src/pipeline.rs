@@ -119,14 +119,15 @@ pub fn clean(
     let before = measure(&raw, Some(&target))?;
     let faces = raw.face_count();
     drop(raw);
-    let Edited { q, feature_edges, schedule, conversion } =
-        edit((&mesh, faces), &reference, config, watch)?;
+    let Edited { q, group_names, feature_edges, schedule, conversion } =
+        edit((mesh, faces), &reference, config, watch)?;
     let stopped = watch.cancelled();
-    let result = lower(&q, mesh.group_names())?.mesh;
+    let result = lower(&q, &group_names)?.mesh;
+    drop(q);
     check(&result).map_err(CleanError::Flawed)?;
     watch.progress(Phase::Measure, 1, 2, None);
-    let after = measure(&result, Some(&target))?;
     let Schedule { edits, rounds, .. } = schedule;
+    let after = measure(&result, Some(&target))?;
     Ok(Cleaned {
         mesh: result,
         report: Report { mends, feature_edges, before, after, edits, rounds, conversion, stopped },
@@ -156,14 +157,15 @@ pub fn plan(
     let (mesh, _) = mend(mesh, policy)?;
     watch.progress(Phase::Reference, 0, 1, None);
     let reference = Reference::new(reference.unwrap_or(&mesh))?;
-    let Edited { q, schedule, .. } = edit((&mesh, faces), &reference, config, watch)?;
+    let Edited { q, group_names, schedule, .. } = edit((mesh, faces), &reference, config, watch)?;
     let Schedule { edits, rounds, .. } = schedule;
-    Ok(Planned { edits, rounds, mesh: lower(&q, mesh.group_names())?.mesh })
+    Ok(Planned { edits, rounds, mesh: lower(&q, &group_names)?.mesh })
 }
 
 /// What was made of a mesh, still lifted.
 struct Edited {
     q: QuadMesh,
+    group_names: Vec<String>,
     feature_edges: usize,
     schedule: Schedule,
     conversion: Option<Conversion>,
@@ -171,20 +173,24 @@ struct Edited {
 
 /// Lifts, plans, edits and smooths a mended mesh that had so many faces before.
 fn edit(
-    (mesh, faces): (&PolyMesh, usize),
+    (mesh, faces): (PolyMesh, usize),
     reference: &Reference,
     config: &Config,
     watch: &dyn Watch,
 ) -> Result<Edited, CleanError> {
     watch.progress(Phase::Reference, 0, 1, None);
-    let topology = Topology::new(mesh);
-    let budget = budget(mesh, reference, (&config.gate, mean_edge(mesh, &topology)))?;
-    let (mut q, feature_edges) = lift_held(mesh, &topology, reference, &config.features)?;
-    let mean_edge = mean_edge(mesh, &topology);
+    let topology = Topology::new(&mesh);
+    let mean_edge = mean_edge(&mesh, &topology);
+    let budget = budget(&mesh, reference, (&config.gate, mean_edge))?;
+    let (mut q, feature_edges) = lift_held(&mesh, &topology, reference, &config.features)?;
     drop(topology);
+    let orientation = smooth::orientation(&mesh, reference);
+    let group_names = mesh.group_names().to_vec();
+    // From here on Q is the mesh.
+    drop(mesh);
     let automation = Automation {
         reference,
-        orientation: smooth::orientation(mesh, reference),
+        orientation,
         budget,
         faces,
         mean_edge,
@@ -203,7 +209,7 @@ fn edit(
         conversion = Some(done);
     }
     q.commit();
-    Ok(Edited { q, feature_edges, schedule, conversion })
+    Ok(Edited { q, group_names, feature_edges, schedule, conversion })
 }
 
 /// Lists a conversion with the edits, so that a log of them makes it again.

@@ -4,6 +4,9 @@
 use super::{Quad, QuadMesh, Vertex};
 use crate::mesh::Point;
 
+/// Entries for which memory is kept when they are forgotten.
+const KEPT: usize = 1 << 16;
+
 /// Which array a journal entry is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Slot {
@@ -86,6 +89,9 @@ impl QuadMesh {
     pub fn commit(&mut self) {
         self.journal.entries.clear();
         self.journal.points.clear();
+        // Lifting and smoothing write to all of the mesh, edits only to a little of it.
+        self.journal.entries.shrink_to(KEPT);
+        self.journal.points.shrink_to(KEPT);
     }
 
     /// What was written since the journal was last cleared.
