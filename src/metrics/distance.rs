@@ -194,7 +194,7 @@ fn farthest(distances: &[f64]) -> f64 {
 /// neighbours are near each other.
 fn used_points(mesh: &PolyMesh, surface: &Reference) -> Vec<Point> {
     let mut left = connectivity::used_vertices(mesh);
-    let mut take = |v: usize| std::mem::take(left.get_mut(v)?).then(|| mesh.points()[v]);
+    let take = |v: usize| std::mem::take(left.get_mut(v)?).then(|| mesh.points()[v]);
     let corners = surface.triangles().iter().flatten().map(|&v| v as usize);
-    corners.chain(0..mesh.vertex_count()).filter_map(|v| take(v)).collect()
+    corners.chain(0..mesh.vertex_count()).filter_map(take).collect()
 }
