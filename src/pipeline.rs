@@ -16,7 +16,7 @@ use crate::planner::schedule::{EditRecord, RoundRecord, Schedule};
 use crate::smooth;
 use crate::sqrtcc::{LiftError, QuadMesh, lift, lower};
 use crate::surface::{
-    self, Deviation, FeatureOptions, Reference, SurfaceError, mean_edge, mesh_features,
+    self, Deviation, FeatureOptions, Reference, SharpLines, SurfaceError, mean_edge, mesh_features,
     vertices_on_lines,
 };
 use crate::watch::{Phase, Watch};
@@ -188,8 +188,10 @@ fn edit(
     let group_names = mesh.group_names().to_vec();
     // From here on Q is the mesh.
     drop(mesh);
+    let lines = SharpLines::new(reference, &config.features, mean_edge);
     let automation = Automation {
         reference,
+        lines: &lines,
         orientation,
         budget,
         faces,

@@ -12,12 +12,12 @@ use super::Exit;
 pub(super) fn work(report: &Report) -> String {
     let mends = report.mends.mends.iter().map(|m| format!("mended: {}", m.sentence));
     let mut lines: Vec<String> = mends.collect();
-    let [local, walks, refills, types] = kinds(&report.edits);
+    let [local, walks, refills, types, crossings] = kinds(&report.edits);
     lines.push(match report.edits.len() {
         0 => "no edit found that improves the mesh".to_owned(),
         n => format!(
             "edits made: {n} (local reductions {local}, walks {walks}, refilled patches {refills}, \
-             type changes {types})"
+             crossings of features {crossings}, type changes {types})"
         ),
     });
     lines.extend(report.conversion.iter().flat_map(not_quads));
@@ -39,8 +39,8 @@ pub(super) fn not_quads(conversion: &Conversion) -> Vec<String> {
 }
 
 /// How many edits of each kind there are.
-fn kinds(edits: &[EditRecord]) -> [usize; 4] {
-    let mut counts = [0; 4];
+fn kinds(edits: &[EditRecord]) -> [usize; 5] {
+    let mut counts = [0; 5];
     for record in edits {
         counts[kind(&record.edit)] += 1;
     }
@@ -53,6 +53,7 @@ fn kind(edit: &Edit) -> usize {
         Edit::Walk { .. } => 1,
         Edit::Refill(_) => 2,
         Edit::TypeChange { .. } => 3,
+        Edit::Crossing(_) => 4,
     }
 }
 

@@ -45,7 +45,7 @@ impl Collapse {
         if !(MIN_VALENCE..=MAX_VALENCE).contains(&merged) {
             return Err(Refusal::Valence);
         }
-        if Self::meets_twice(mesh, [a, b, c, d]) {
+        if meets_twice(mesh, [a, b, c, d]) {
             return Err(Refusal::DoubleEdge);
         }
         let (kept, gone) = if mesh.is_held(c) { (hc, ha) } else { (ha, hc) };
@@ -57,15 +57,6 @@ impl Collapse {
         Ok(Legal { op: self, delta })
     }
 
-    /// Whether a and c have a neighbour other than b and d, or a diagonal neighbour, in common.
-    fn meets_twice(mesh: &QuadMesh, [a, b, c, d]: [Vertex; 4]) -> bool {
-        let joined = mesh
-            .neighbours(a)
-            .filter(|&v| v != b && v != d)
-            .any(|v| mesh.neighbours(c).any(|w| w == v));
-        joined || mesh.diagonals(a).any(|v| v != c && mesh.diagonals(c).any(|w| w == v))
-    }
-
     /// Merges the corners; the vertex that is left. A held vertex survives in its place, else the
     /// origin of the half-edge does, halfway between the two.
     pub fn apply(mesh: &mut QuadMesh, legal: Legal<Self>) -> Vertex {
@@ -73,29 +64,44 @@ impl Collapse {
         if mesh.is_held(mesh.origin(QuadMesh::opposite(h))) {
             h = QuadMesh::opposite(h);
         }
-        let quad = [h, QuadMesh::next(h), QuadMesh::opposite(h), QuadMesh::prev(h)];
-        let [a, b, c, d] = quad.map(|e| mesh.origin(e));
-        let [ab, bc, cd, da] = quad.map(|e| mesh.twin(e));
-        let mut moved = bc;
-        // Out half-edges of c, counter-clockwise from c→b around to c→d's predecessor.
-        while moved != quad[2] {
-            mesh.set_origin(moved, a);
-            moved = mesh.ccw(moved);
-        }
-        mesh.join(ab, bc);
-        mesh.join(cd, da);
-        mesh.set_out(a, da);
-        mesh.set_out(b, ab);
-        mesh.set_out(d, cd);
-        mesh.set_valence(a, mesh.valence(a) + mesh.valence(c) - 2);
-        mesh.set_valence(b, mesh.valence(b) - 1);
-        mesh.set_valence(d, mesh.valence(d) - 1);
-        if !mesh.is_face(a) && !mesh.is_held(a) {
-            mesh.set_position(a, nalgebra::center(&mesh.position(a), &mesh.position(c)));
-        }
-        mesh.kill_vertex(c);
-        mesh.kill_quad(QuadMesh::quad(h));
-        debug_check(mesh, &[a, b, d]);
-        a
+        close(mesh, h)
     }
+}
+
+/// Whether a and c have a neighbour other than b and d, or a diagonal neighbour, in common.
+pub(super) fn meets_twice(mesh: &QuadMesh, [a, b, c, d]: [Vertex; 4]) -> bool {
+    let joined = mesh
+        .neighbours(a)
+        .filter(|&v| v != b && v != d)
+        .any(|v| mesh.neighbours(c).any(|w| w == v));
+    joined || mesh.diagonals(a).any(|v| v != c && mesh.diagonals(c).any(|w| w == v))
+}
+
+/// Merges the corner across the quad of `h` with its origin, which stays where it is if it is
+/// held, else goes halfway; the origin.
+pub(super) fn close(mesh: &mut QuadMesh, h: HalfEdge) -> Vertex {
+    let quad = [h, QuadMesh::next(h), QuadMesh::opposite(h), QuadMesh::prev(h)];
+    let [a, b, c, d] = quad.map(|e| mesh.origin(e));
+    let [ab, bc, cd, da] = quad.map(|e| mesh.twin(e));
+    let mut moved = bc;
+    // Out half-edges of c, counter-clockwise from c→b around to c→d's predecessor.
+    while moved != quad[2] {
+        mesh.set_origin(moved, a);
+        moved = mesh.ccw(moved);
+    }
+    mesh.join(ab, bc);
+    mesh.join(cd, da);
+    mesh.set_out(a, da);
+    mesh.set_out(b, ab);
+    mesh.set_out(d, cd);
+    mesh.set_valence(a, mesh.valence(a) + mesh.valence(c) - 2);
+    mesh.set_valence(b, mesh.valence(b) - 1);
+    mesh.set_valence(d, mesh.valence(d) - 1);
+    if !mesh.is_face(a) && !mesh.is_held(a) {
+        mesh.set_position(a, nalgebra::center(&mesh.position(a), &mesh.position(c)));
+    }
+    mesh.kill_vertex(c);
+    mesh.kill_quad(QuadMesh::quad(h));
+    debug_check(mesh, &[a, b, d]);
+    a
 }

@@ -13,11 +13,13 @@
 mod around;
 mod collapse;
 mod flip;
+mod resample;
 mod split;
 
 pub use around::around;
 pub use collapse::Collapse;
 pub use flip::{Flip, Turn};
+pub use resample::{Resample, within_line};
 pub use split::Split;
 
 use crate::mesh::NONE;

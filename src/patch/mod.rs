@@ -6,12 +6,14 @@
 //! Figure 11 (2a to 2b); the templates are the classical mid-point subdivisions in a lattice that
 //! has vertices at integer and faces at half-integer points.
 
+pub mod crossing;
 pub mod embed;
 pub mod refill;
 pub mod region;
 mod replay;
 pub mod template;
 
+pub use crossing::Crossing;
 pub use refill::Refill;
 pub use region::{Grower, Region};
 pub use replay::Misfit;

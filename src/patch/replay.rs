@@ -4,7 +4,7 @@
 use super::region::Stop;
 use super::{Filling, Grower, Refill, embed};
 use crate::mesh::{MeshError, Point, PolyMesh, Topology};
-use crate::ops::{MAX_VALENCE, MIN_VALENCE};
+use crate::ops::{MAX_VALENCE, MIN_VALENCE, Refusal};
 use crate::sqrtcc::{LiftError, QuadMesh, Vertex, lift};
 use fixedbitset::FixedBitSet;
 use thiserror::Error;
@@ -36,6 +36,12 @@ pub enum Misfit {
     /// The filling is no manifold.
     #[error("filling: {0}")]
     Lift(#[from] LiftError),
+    /// A slide names no vertex of a feature, or no place.
+    #[error("`slides` must give vertices of features finite places")]
+    Slide,
+    /// An operation is not legal.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
     /// The filling is no disk with just this rim.
     #[error("the filling is no disk with the rim of the region")]
     OtherDisk,

@@ -5,13 +5,14 @@ use super::contact::Contact;
 use super::cost::CostOptions;
 use super::gate::{GateOptions, Setting, shape_of};
 use super::global::{self, Group, Link};
+use super::lines;
 use super::schedule::{Schedule, Slack, is_poor};
 use super::worker::{Size, Stage, Task};
 use crate::mesh::MeshError;
 use crate::moves;
 use crate::smooth::{self, Budget, Orientation, RelaxOptions, SmoothOptions};
 use crate::sqrtcc::{QuadMesh, Vertex, lower};
-use crate::surface::Reference;
+use crate::surface::{Reference, SharpLines};
 use crate::watch::Watch;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,6 +21,8 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct Automation<'a> {
     /// The surface to stay on.
     pub reference: &'a Reference,
+    /// Its sharp features.
+    pub lines: &'a SharpLines,
     /// How the mesh is oriented against it.
     pub orientation: Orientation,
     /// How far the mesh may be from it, in units of the file.
@@ -79,6 +82,11 @@ impl Automation<'_> {
                 // What has moved may be near enough to others now to cancel.
                 let relocations = (Stage::Relocations { faces }, -self.plan.relocation_saves);
                 for step in [relocations, refills] {
+                    self.rounds((mesh, &mut contact), &mut schedule, step, watch);
+                }
+            }
+            if self.plan.crossings > 0 {
+                for step in [(Stage::Crossings { faces }, lambda), refills] {
                     self.rounds((mesh, &mut contact), &mut schedule, step, watch);
                 }
             }
@@ -172,7 +180,15 @@ impl Automation<'_> {
                 _ => BTreeMap::new(),
             };
             let groups = &groups;
-            let task = Task { stage, lambda, groups, plan: self.plan, costs: self.costs, gate };
+            let task = Task {
+                stage,
+                lambda,
+                groups,
+                plan: self.plan,
+                costs: self.costs,
+                gate,
+                lines: self.lines,
+            };
             if !schedule.round((mesh, contact), &task, watch) {
                 return;
             }
@@ -214,6 +230,7 @@ impl Automation<'_> {
         for (&v, point) in polygons.vertex_ids.iter().zip(points) {
             mesh.set_position(v, point);
         }
+        lines::relax(mesh, self.lines, (self.plan.slides, 0.3 * self.hausdorff()));
         mesh.commit();
         Ok(())
     }

@@ -3,7 +3,7 @@
 use crate::mesh::NONE;
 use crate::patch::region::Stop;
 use crate::patch::{Grower, Region};
-use crate::sqrtcc::{HalfEdge, QuadMesh, Vertex};
+use crate::sqrtcc::{HalfEdge, QuadKind, QuadMesh, Vertex};
 
 /// How far and how large the search for regions goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,6 +15,9 @@ pub struct Limits {
     /// How many elements fewer a region must be able to have.
     pub least_gain: u32,
 }
+
+/// Vertices and faces around a seed among which feature edges are looked for.
+const NEARBY: usize = 200;
 
 /// Finds regions; keeps its arrays from one seed to the next.
 #[derive(Debug, Clone, Default)]
@@ -58,6 +61,62 @@ impl Clusters {
         can_gain(&region, limits.least_gain).then_some(region)
     }
 
+    /// Convex disks beside the origin of `at`, a vertex of a feature, on the side of `at`, small to
+    /// large.
+    pub fn beside(&mut self, mesh: &QuadMesh, at: HalfEdge, limits: Limits) -> Vec<Region> {
+        let mut regions = Vec::new();
+        self.around_sector(mesh, at, limits, &mut regions);
+        regions.sort_by_key(|r| r.faces.len());
+        regions
+    }
+
+    /// The convex disk around the origins of `at`, on their sides, and `faces`.
+    pub fn spanning(
+        &mut self,
+        mesh: &QuadMesh,
+        at: &[HalfEdge],
+        faces: &[Vertex],
+        most: usize,
+    ) -> Option<Region> {
+        self.grower.start(mesh);
+        at.iter().for_each(|&h| self.grower.add_sector(mesh, h));
+        faces.iter().for_each(|&f| self.grower.add_face(mesh, f));
+        self.grower.convex(mesh, most).ok()
+    }
+
+    /// The feature edges nearest to `seed` by steps that cross none, each as the half-edge from an
+    /// end to the face on the side of the seed.
+    pub fn feature_edges(&mut self, mesh: &QuadMesh, seed: Vertex, most: usize) -> Vec<HalfEdge> {
+        self.parent.resize(mesh.vertex_ids() as usize, NONE);
+        if mesh.is_held(seed) && !mesh.is_pin(seed) {
+            for sector in mesh.sectors(seed).filter(|&h| mesh.excess(h) != 0) {
+                mesh.sector(sector).for_each(|h| self.visit(mesh, mesh.target(h), seed));
+            }
+        } else {
+            self.visit(mesh, seed, seed);
+        }
+        let (mut next, mut found) = (0, Vec::new());
+        while let Some(&v) = self.visited.get(next).filter(|_| next < NEARBY && found.len() < most)
+        {
+            next += 1;
+            if mesh.is_face(v) {
+                let lines = |&h: &HalfEdge| mesh.kind(QuadMesh::quad(h)) == QuadKind::Feature;
+                found.extend(mesh.outgoing(v).filter(lines).map(QuadMesh::prev));
+            }
+            if !mesh.is_held(v) || mesh.is_pin(v) {
+                mesh.neighbours(v).for_each(|w| self.visit(mesh, w, v));
+            }
+        }
+        self.forget();
+        found
+    }
+
+    fn forget(&mut self) {
+        for v in std::mem::take(&mut self.visited) {
+            self.parent[v as usize] = NONE;
+        }
+    }
+
     /// Adds the regions around the origin of `at` on the side of `at`.
     fn around_sector(
         &mut self,
@@ -98,9 +157,7 @@ impl Clusters {
                 keep(together, regions);
             }
         }
-        for v in std::mem::take(&mut self.visited) {
-            self.parent[v as usize] = NONE;
-        }
+        self.forget();
     }
 
     /// The irregular elements nearest to the origin of `at` on the side of `at`, by steps in Q that do not cross frozen lines.
@@ -186,7 +243,7 @@ fn can_gain(region: &Region, least: u32) -> bool {
 }
 
 /// The least irregularity that a filling of the region can have, by its number of corners.
-fn least_after(region: &Region) -> u32 {
+pub(super) fn least_after(region: &Region) -> u32 {
     let inside = match region.corners.len() {
         k @ 2..=6 => k.abs_diff(4) as u32,
         _ => return u32::MAX / 2,

@@ -4,7 +4,7 @@ use super::cost::{CostOptions, StepContext, TERMS};
 use super::movement::Cancellation;
 use crate::moves::{Dipole, Step};
 use crate::ops::{Op, Refusal};
-use crate::patch::Refill;
+use crate::patch::{Crossing, Refill};
 use crate::sqrtcc::QuadMesh;
 use serde::Serialize;
 
@@ -35,6 +35,8 @@ pub enum Edit {
     },
     /// A patch is refilled.
     Refill(Refill),
+    /// Features are resampled, and patches on all their sides refilled.
+    Crossing(Crossing),
 }
 
 /// A term of the cost of a walk, summed over its steps and weighted.
@@ -47,17 +49,18 @@ pub struct CostTerm {
 }
 
 impl Edit {
-    /// The edit as it has to be made on a mesh with so many quad ids `now`, after it was planned
-    /// on `planned` of them: operations that follow one another name what the ones before made.
+    /// The edit as it has to be made on a mesh with so many (vertex, quad) ids `now`, after it was
+    /// planned on `planned` of them: its later parts name what the ones before made.
     #[must_use]
-    pub fn rebased(self, planned: u32, now: u32) -> Self {
+    pub fn rebased(self, planned: (u32, u32), now: (u32, u32)) -> Self {
         let rebased = |ops: Vec<Op>| {
-            ops.into_iter().map(|op| op.rebased(4 * planned, 4 * now)).collect::<Vec<Op>>()
+            ops.into_iter().map(|op| op.rebased(4 * planned.1, 4 * now.1)).collect::<Vec<Op>>()
         };
         match self {
             Self::Local { ops } => Self::Local { ops: rebased(ops) },
             Self::TypeChange { ops } => Self::TypeChange { ops: rebased(ops) },
-            other => other,
+            Self::Crossing(crossing) => Self::Crossing(crossing.rebased(planned, now)),
+            Self::Walk { .. } | Self::Refill(_) => self,
         }
     }
 
@@ -70,6 +73,7 @@ impl Edit {
             }
             Self::Walk { start, steps, .. } => walk(mesh, *start, steps),
             Self::Refill(refill) => refill.run(mesh),
+            Self::Crossing(crossing) => crossing.run(mesh),
         };
         if done.is_err() {
             mesh.undo_to(mark);

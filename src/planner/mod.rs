@@ -11,9 +11,11 @@ pub mod clusters;
 pub mod contact;
 pub mod cost;
 mod cover;
+pub mod crossings;
 pub mod edit;
 pub mod gate;
 pub mod global;
+pub mod lines;
 pub mod local;
 pub mod movement;
 pub mod schedule;
@@ -41,6 +43,9 @@ knobs! {
         relocation_saves: f64 = 40.0, in 0.0..=100_000.0, "degree-corners";
         /// Most rounds of the global plan in each stage; 0 leaves the greedy one alone.
         global: u32 = 30, in 0.0..=1000.0, "count";
+        /// Feature edges near an element at which a way across is looked for; 0 leaves all features
+        /// as they are sampled.
+        crossings: u32 = 8, in 0.0..=100.0, "count";
         /// Irregular elements that are planned for in the same round are this far apart.
         spacing: u32 = 2, in 0.0..=100.0, "steps in Q";
         /// Most steps that a dislocation walks.
@@ -63,6 +68,8 @@ knobs! {
         size_drift: f64 = 0.08, in 0.0..=3.0, "ln";
         /// Iterations of smoothing before the first stage and after each.
         smooth_between: u32 = 40, in 0.0..=5000.0, "count";
+        /// Sweeps over the vertices within features, which slide along them, after each smoothing.
+        slides: u32 = 5, in 0.0..=1000.0, "count";
         /// Make every face a quad at the end, as far as parity allows.
         pure_quad: bool = false, in 0.0..=1.0, "";
     }

@@ -265,7 +265,8 @@ impl Schedule {
                 continue;
             }
             let (first_new, mark) = (mesh.vertex_ids(), mesh.mark());
-            proposal.edit = proposal.edit.rebased(planned.1, mesh.quad_ids());
+            let ids = (mesh.vertex_ids(), mesh.quad_ids());
+            proposal.edit = proposal.edit.rebased(planned, ids);
             let Some(gain) = makes(mesh, &proposal) else { continue };
             let moved = proposal.moved_to(planned.0, first_new);
             let moved: Vec<_> = moved

@@ -7,13 +7,14 @@ use super::edit::{Edit, walk_terms};
 use super::gate::{Failure, Gate, Passed, Rejected, Setting, Shape};
 use super::global::Group;
 use super::movement::MovementGraph;
-use super::{PlanOptions, local};
+use super::{PlanOptions, crossings, local};
 use crate::mesh::Point;
 use crate::moves::Dipole;
 use crate::ops::Op;
 use crate::patch::embed::OldPatch;
 use crate::patch::{Refill, Region, fillings};
 use crate::sqrtcc::{Changes, QuadMesh, Vertex};
+use crate::surface::SharpLines;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -127,6 +128,11 @@ pub enum Stage {
         /// Most faces.
         faces: usize,
     },
+    /// Features resampled, with refills of at most so many faces on all their sides.
+    Crossings {
+        /// Most faces.
+        faces: usize,
+    },
     /// Refills that leave as many elements, at places that suit the surface better. The exchange
     /// rate is negative: what must be saved.
     Relocations {
@@ -150,6 +156,8 @@ pub struct Task<'a> {
     pub costs: &'a CostOptions,
     /// The gate.
     pub gate: Setting<'a>,
+    /// The sharp features of the reference.
+    pub lines: &'a SharpLines,
 }
 
 /// How many faces the mesh may have.
@@ -249,6 +257,9 @@ impl Worker {
                 self.propose_refill((seed, faces, 1), context, &mut outcome);
             }
             Stage::Groups { faces } => self.propose_group((seed, faces), context, &mut outcome),
+            Stage::Crossings { faces } => {
+                self.propose_crossing((seed, faces), context, &mut outcome);
+            }
             Stage::Relocations { faces } => {
                 self.propose_refill((seed, faces, 0), context, &mut outcome);
             }
@@ -397,6 +408,29 @@ impl Worker {
         outcome.scope.extend(&group.ways);
         let region = self.clusters.joining(&self.mesh, &group.ways, limits);
         self.refill_first((seed, 1), region.into_iter().collect(), context, outcome);
+    }
+
+    /// The first crossing that passes.
+    fn propose_crossing(
+        &mut self,
+        (seed, faces): (Vertex, usize),
+        context: Context,
+        outcome: &mut Outcome,
+    ) {
+        let plan = context.task.plan;
+        let (edges, partners) = (plan.crossings as usize, plan.partners as usize);
+        let bounds = crossings::Bounds { edges, faces, partners, tries: plan.tries as usize };
+        let tools = (&mut self.clusters, context.task.lines);
+        let found = crossings::around(&mut self.mesh, seed, tools, bounds);
+        for (gain, crossing) in found {
+            let faces: usize = crossing.refills.iter().map(|r| r.faces.len()).sum();
+            let sweeps = context.task.gate.options.refill_sweeps + (faces as f64).sqrt() as u32;
+            let candidate = (gain, 0.0, Edit::Crossing(crossing));
+            if let Ok(proposal) = self.attempt(seed, candidate, sweeps, context, outcome) {
+                outcome.proposal = Some(proposal);
+                return;
+            }
+        }
     }
 
     /// The best refill of the first of the regions that has one.

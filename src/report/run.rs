@@ -109,6 +109,10 @@ pub fn words(edit: &Edit) -> String {
         }
         Edit::TypeChange { .. } => "type change".to_owned(),
         Edit::Refill(_) => "refill".to_owned(),
+        Edit::Crossing(crossing) => match crossing.shifts.len() {
+            1 => "crossing of a feature".to_owned(),
+            n => format!("crossing of {n} features"),
+        },
     }
 }
 

@@ -4,7 +4,7 @@
 use crate::mesh::Point;
 use crate::moves::{Dipole, Step};
 use crate::ops::Op;
-use crate::patch::Refill;
+use crate::patch::{Crossing, Refill};
 use crate::planner::edit::Edit;
 use crate::planner::schedule::EditRecord;
 use serde::Serialize;
@@ -29,6 +29,7 @@ enum Entry<'a> {
     Operations { ops: &'a [Op] },
     Walk { start: Dipole, steps: &'a [Step] },
     Refill(&'a Refill),
+    Crossing(&'a Crossing),
 }
 
 impl<'a> From<&'a Edit> for Entry<'a> {
@@ -37,6 +38,7 @@ impl<'a> From<&'a Edit> for Entry<'a> {
             Edit::Local { ops } | Edit::TypeChange { ops } => Self::Operations { ops },
             Edit::Walk { start, steps, .. } => Self::Walk { start: *start, steps },
             Edit::Refill(refill) => Self::Refill(refill),
+            Edit::Crossing(crossing) => Self::Crossing(crossing),
         }
     }
 }

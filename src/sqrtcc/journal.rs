@@ -14,6 +14,7 @@ pub(super) enum Slot {
     Twin,
     Out,
     Valence,
+    Ideal,
     Position,
     NewVertex,
     NewQuad,
@@ -74,6 +75,7 @@ impl QuadMesh {
                 Slot::Twin => self.twin[i] = old,
                 Slot::Out => self.out[i] = old,
                 Slot::Valence => self.valence[i] = old,
+                Slot::Ideal => self.ideal[i] = old as u8,
                 Slot::Position => {
                     if let Some(point) = self.journal.points.pop() {
                         self.position[i] = point;
@@ -101,6 +103,7 @@ impl QuadMesh {
         for entry in &self.journal.entries {
             match entry.slot {
                 Slot::Origin | Slot::Twin => changes.quads.push(Self::quad(entry.index)),
+                Slot::Ideal => changes.quads.push(entry.index / 2),
                 Slot::Out | Slot::Valence | Slot::Position => changes.vertices.push(entry.index),
                 Slot::NewVertex | Slot::NewQuad => (),
             }
@@ -128,6 +131,7 @@ impl QuadMesh {
             let corners = 4 * q..4 * q + 4;
             self.origin[corners.clone()].copy_from_slice(&original.origin[corners.clone()]);
             self.twin[corners.clone()].copy_from_slice(&original.twin[corners]);
+            self.ideal[2 * q..2 * q + 2].copy_from_slice(&original.ideal[2 * q..2 * q + 2]);
         }
         self.out.extend_from_slice(&original.out[vertices..]);
         self.valence.extend_from_slice(&original.valence[vertices..]);
@@ -149,7 +153,7 @@ impl QuadMesh {
             .filter_map(|e| match e.slot {
                 Slot::Out | Slot::Valence | Slot::Position => Some([e.index, e.index]),
                 Slot::Origin => Some([e.old, self.origin[e.index as usize]]),
-                Slot::Twin | Slot::NewVertex | Slot::NewQuad => None,
+                Slot::Twin | Slot::Ideal | Slot::NewVertex | Slot::NewQuad => None,
             })
             .flatten()
             .filter(|&v| v != crate::mesh::NONE)

@@ -332,6 +332,11 @@ impl QuadMesh {
         self.add_vertex(self.class[like as usize] & FACE, self.group(like), position)
     }
 
+    /// A new p-vertex of the group of `like`, held by a feature, not yet connected.
+    pub(crate) fn add_held_vertex_like(&mut self, like: Vertex, position: Point) -> Vertex {
+        self.add_vertex(HELD, self.group(like), position)
+    }
+
     pub(super) fn add_vertex(&mut self, class: u32, group: u32, position: Point) -> Vertex {
         self.journal.record(Slot::NewVertex, 0, 0);
         self.out.push(NONE);
@@ -350,6 +355,30 @@ impl QuadMesh {
         self.kind.push(QuadKind::Free as u32);
         self.ideal.extend([0; 2]);
         self.quad_ids() - 1
+    }
+
+    /// A new quad of the kind of `like`, with no corners yet.
+    pub(crate) fn add_quad_like(&mut self, like: Quad) -> Quad {
+        let quad = self.add_quad();
+        self.kind[quad as usize] = self.kind[like as usize];
+        quad
+    }
+
+    /// The ideal number of faces of the sector that begins at the quad of `h`, at its origin, a
+    /// p-vertex; for frozen quads only.
+    pub(crate) fn ideal_at(&self, h: HalfEdge) -> u8 {
+        self.ideal[Self::ideal_index(h)]
+    }
+
+    pub(crate) fn set_ideal(&mut self, h: HalfEdge, ideal: u8) {
+        let index = Self::ideal_index(h);
+        self.journal.record(Slot::Ideal, index as u32, u32::from(self.ideal[index]));
+        self.ideal[index] = ideal;
+    }
+
+    /// Where the ideal is kept of the sector that begins at the quad of `h`, at its origin.
+    pub(super) fn ideal_index(h: HalfEdge) -> usize {
+        2 * Self::quad(h) as usize + (h as usize & 3) / 2
     }
 }
 

@@ -63,8 +63,7 @@ impl QuadMesh {
     /// Where the ideal of the sector that begins with `first` is kept: at the frozen quad on its
     /// clockwise side, at the p-corner of the origin.
     pub(super) fn ideal_slot(&self, first: HalfEdge) -> usize {
-        let corner = Self::next(self.twin(first));
-        2 * Self::quad(corner) as usize + (corner as usize & 3) / 2
+        Self::ideal_index(Self::next(self.twin(first)))
     }
 }
 

@@ -148,6 +148,12 @@ impl SharpLines {
         &self.lengths
     }
 
+    /// The closest point of a line that is at most `radius` away. O(log n) expected.
+    #[must_use]
+    pub fn closest(&self, query: &Point, radius: f64) -> Option<Point> {
+        self.tree.as_ref()?.closest(query, radius).map(|hit| hit.point)
+    }
+
     /// Whether a line is at most `radius` away. O(log n) expected.
     #[must_use]
     pub fn is_within(&self, query: &Point, radius: f64) -> bool {

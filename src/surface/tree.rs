@@ -182,6 +182,10 @@ impl Tree {
 
 impl Tree {
     /// Whether some triangle is at most `radius` away. O(log n) expected.
+    pub(super) fn closest(&self, query: &Point, radius: f64) -> Option<Hit> {
+        self.search(query, Best::within(radius), |_| true, CLOSEST).hit()
+    }
+
     pub(super) fn is_within(&self, query: &Point, radius: f64) -> bool {
         self.near(query, radius).is_some()
     }

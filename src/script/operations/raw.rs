@@ -3,11 +3,11 @@
 use super::Operation;
 use crate::mesh::Point;
 use crate::ops::{Collapse, Flip, Op, Split};
-use crate::patch;
+use crate::patch::{self, Misfit};
 use crate::script::error::Trouble;
 use crate::script::run::Done;
 use crate::script::session::Session;
-use crate::sqrtcc::Vertex;
+use crate::sqrtcc::{QuadMesh, Vertex};
 use crate::watch::Watch;
 use serde::Deserialize;
 
@@ -68,18 +68,39 @@ pub(super) struct Refill(patch::Refill);
 
 impl Operation for Refill {
     fn run(&self, session: &mut Session, _: &dyn Watch) -> Result<Done, Trouble> {
-        let mesh = session.mesh_mut();
-        let fitted = self.0.fitted(mesh).map_err(|misfit| Trouble::other(misfit.to_string()))?;
-        let mark = mesh.mark();
-        fitted.run(mesh)?;
-        let touched = mesh.touched_since(mark);
-        for v in touched.into_iter().filter(|&v| mesh.is_alive(v)) {
-            mesh.check_vertex(v).map_err(|violation| Trouble::other(violation.to_string()))?;
-        }
-        let (before, after) = (fitted.faces.len(), fitted.filling.face_count());
-        let words = format!("{before} faces become {after}");
-        Ok(Done { words, refills: vec![fitted], ..Done::default() })
+        refilled(session.mesh_mut(), |mesh| {
+            let fitted = self.0.fitted(mesh)?;
+            fitted.run(mesh)?;
+            Ok(vec![fitted])
+        })
     }
+}
+
+/// Features resampled, and the patches beside them with what takes their place.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(transparent)]
+pub(super) struct Crossing(patch::Crossing);
+
+impl Operation for Crossing {
+    fn run(&self, session: &mut Session, _: &dyn Watch) -> Result<Done, Trouble> {
+        refilled(session.mesh_mut(), |mesh| self.0.replay(mesh))
+    }
+}
+
+/// Makes refills, and checks all that they touched.
+fn refilled(
+    mesh: &mut QuadMesh,
+    make: impl FnOnce(&mut QuadMesh) -> Result<Vec<patch::Refill>, Misfit>,
+) -> Result<Done, Trouble> {
+    let mark = mesh.mark();
+    let refills = make(mesh).map_err(|misfit| Trouble::other(misfit.to_string()))?;
+    for v in mesh.touched_since(mark).into_iter().filter(|&v| mesh.is_alive(v)) {
+        mesh.check_vertex(v).map_err(|violation| Trouble::other(violation.to_string()))?;
+    }
+    let before: usize = refills.iter().map(|r| r.faces.len()).sum();
+    let after: usize = refills.iter().map(|r| r.filling.face_count()).sum();
+    let words = format!("{before} faces become {after}");
+    Ok(Done { words, refills, ..Done::default() })
 }
 
 /// Puts every vertex where it is said to be.

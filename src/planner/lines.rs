@@ -1,0 +1,147 @@
+//! Feature lines of the mesh: vertices within them slide along the creases of the reference.
+
+use super::gate::shape_of;
+use crate::mesh::Point;
+use crate::ops::within_line;
+use crate::patch::crossing::Slide;
+use crate::sqrtcc::{HalfEdge, QuadMesh, Vertex};
+use crate::surface::SharpLines;
+use smallvec::SmallVec;
+
+/// Vertices of a line, to either side of where it is resampled, that slide at most.
+const WINDOW: usize = 6;
+/// From this turn on a line has a corner, which stays.
+const CORNER_DEG: f64 = 40.0;
+/// How far from the chord the crease may be, in lengths of the edge.
+const SAGITTA: f64 = 0.3;
+/// Shares of the way to the next vertex of the line that are tried.
+const STRIDES: [f64; 3] = [0.25, 0.1, 0.03];
+
+/// The vertices before and after `v` on its feature line, if the line runs on through it without a
+/// corner.
+pub(super) fn beside(mesh: &QuadMesh, v: Vertex) -> Option<[Vertex; 2]> {
+    if mesh.is_face(v) || !mesh.is_held(v) || !within_line(mesh, v) {
+        return None;
+    }
+    let mut on = mesh.outgoing(v).filter(|&h| mesh.is_frozen(QuadMesh::quad(h)));
+    let mut next = || on.next().map(|h| mesh.origin(QuadMesh::opposite(h)));
+    let ends = [next()?, next()?];
+    let [a, b] = ends.map(|end| mesh.position(end) - mesh.position(v));
+    (a.angle(&-b) <= CORNER_DEG.to_radians()).then_some(ends)
+}
+
+/// Lets the vertices within feature lines slide, one after the other, to where the angles around
+/// them deviate less. They end on the crease, and the chords at them within `tolerance` of it (units
+/// of the file) or as near to it as before. O(vertices · sweeps).
+pub fn relax(mesh: &mut QuadMesh, lines: &SharpLines, (sweeps, tolerance): (u32, f64)) {
+    let within = |&v: &Vertex| beside(mesh, v).is_some();
+    let vertices: Vec<Vertex> = mesh.vertices().filter(within).collect();
+    for _ in 0..sweeps {
+        let moved = vertices.iter().filter(|&&v| slide(mesh, v, (lines, tolerance))).count();
+        if moved == 0 {
+            return;
+        }
+    }
+}
+
+/// Slides `v` to the best of a few places; whether it moved.
+fn slide(mesh: &mut QuadMesh, v: Vertex, (lines, tolerance): (&SharpLines, f64)) -> bool {
+    let Some(ends) = beside(mesh, v) else { return false };
+    let at = mesh.position(v);
+    let [before, after] = ends.map(|w| mesh.position(w));
+    let bend = |at: &Point| {
+        let off = |end: &Point| {
+            let middle = nalgebra::center(at, end);
+            let near = lines.closest(&middle, (end - at).norm());
+            near.map_or(f64::INFINITY, |on| (on - middle).norm())
+        };
+        off(&before).max(off(&after))
+    };
+    let most = bend(&at).max(tolerance);
+    let faces: SmallVec<[Vertex; 8]> = mesh.neighbours(v).filter(|&f| !mesh.is_ghost(f)).collect();
+    let now = shape_of(mesh, faces.iter().copied());
+    let mut best = (now, at);
+    for (end, stride) in [before, after].iter().flat_map(|e| STRIDES.map(|s| (e, s))) {
+        let chord = at + (end - at) * stride;
+        // Farther off is another crease.
+        let Some(place) = lines.closest(&chord, most) else { continue };
+        if bend(&place) > most {
+            continue;
+        }
+        mesh.set_position(v, place);
+        let shape = shape_of(mesh, faces.iter().copied());
+        if shape.angles() < best.0.angles() && shape.is_about_as_good_as(&now) {
+            best = (shape, place);
+        }
+    }
+    mesh.set_position(v, best.1);
+    best.1 != at
+}
+
+/// The part of a feature line around an edge, as it is before the edge is resampled.
+pub(super) struct Line {
+    vertices: Vec<Vertex>,
+    points: Vec<Point>,
+    /// Length of the edge, in units of the file.
+    edge: f64,
+}
+
+impl Line {
+    /// From the edge of `h` up to [`WINDOW`] vertices on either side, but not past the end of a line.
+    pub(super) fn around(mesh: &QuadMesh, h: HalfEdge) -> Self {
+        let half = |h: HalfEdge, against: &[Vertex]| {
+            let (mut from, mut v) = (mesh.origin(QuadMesh::opposite(h)), mesh.origin(h));
+            let mut vertices = vec![v];
+            while let Some(ends) = beside(mesh, v).filter(|_| vertices.len() <= WINDOW) {
+                let next = if ends[0] == from { ends[1] } else { ends[0] };
+                if vertices.contains(&next) || against.contains(&next) {
+                    break;
+                }
+                vertices.push(next);
+                (from, v) = (v, next);
+            }
+            vertices
+        };
+        let mut vertices = half(h, &[mesh.origin(QuadMesh::opposite(h))]);
+        vertices.reverse();
+        let onward = half(QuadMesh::opposite(h), &vertices);
+        vertices.extend(onward);
+        let points = vertices.iter().map(|&v| mesh.position(v)).collect();
+        let edge =
+            mesh.position(mesh.origin(h)) - mesh.position(mesh.origin(QuadMesh::opposite(h)));
+        Self { vertices, points, edge: edge.norm() }
+    }
+
+    /// Where the vertices go once `vertex` has come, or all but one of the ends of the edge have
+    /// gone: as densely along the line as they were, with the ends of the part where they are.
+    pub(super) fn slides(&self, mesh: &QuadMesh, vertex: Vertex, lines: &SharpLines) -> Vec<Slide> {
+        let mut after: Vec<Vertex> = Vec::new();
+        let middle = self.vertices.iter().position(|&v| !mesh.is_alive(v));
+        if middle.is_some() {
+            after.extend(self.vertices.iter().filter(|&&v| mesh.is_alive(v)));
+        } else {
+            let at = self.cut_at(mesh, vertex);
+            after.extend(&self.vertices[..at]);
+            after.push(vertex);
+            after.extend(&self.vertices[at..]);
+        }
+        let (last, ends) = (self.points.len() - 1, after.len() - 1);
+        let at = |i: usize| {
+            let place = i as f64 * last as f64 / ends as f64;
+            let from = (place as usize).min(last - 1);
+            let share = place - from as f64;
+            let on = self.points[from] + (self.points[from + 1] - self.points[from]) * share;
+            lines.closest(&on, SAGITTA * self.edge).unwrap_or(on)
+        };
+        let inner = (1..ends).map(|i| Slide { vertex: after[i], to: at(i).coords.into() });
+        inner.collect()
+    }
+
+    /// Before which of the vertices the new one comes.
+    fn cut_at(&self, mesh: &QuadMesh, vertex: Vertex) -> usize {
+        let beside: Vec<Vertex> = mesh.diagonals(vertex).collect();
+        let is_beside = |&v: &Vertex| beside.contains(&v);
+        let both = self.vertices.windows(2).position(|w| w.iter().all(is_beside));
+        both.map_or(1, |i| i + 1)
+    }
+}
