@@ -15,8 +15,7 @@ use quadmend::surface::{FeatureOptions, Reference, SharpLines};
 fn cube() -> (QuadMesh, SharpLines) {
     let mesh = shapes::cube(8);
     let q = lift(&mesh, &cube_edges(&mesh)).expect("a cube");
-    let lines =
-        SharpLines::new(&Reference::new(&mesh).unwrap(), &FeatureOptions::default(), 0.25);
+    let lines = SharpLines::new(&Reference::new(&mesh).unwrap(), &FeatureOptions::default(), 0.25);
     (q, lines)
 }
 

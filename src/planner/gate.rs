@@ -42,7 +42,7 @@ knobs! {
         own_rms_edges: f64 = 0.03, in 0.0..=10.0, "mean edges";
         /// Mean deviation of corner angles that all edits together may cause, as a multiple of the
         /// input's, or of 2 degrees if that is more.
-        angles: f64 = 0.75, in 0.0..=100.0, "input deviations";
+        angles: f64 = 0.78, in 0.0..=100.0, "input deviations";
         /// Largest |ln| of the number of faces after over before a refill.
         area: f64 = 0.3, in 0.0..=3.0, "ln";
     }
