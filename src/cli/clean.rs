@@ -30,7 +30,7 @@ Examples:
   quadmend clean remesh.obj -o clean.obj --time-limit 60       # the best of a minute
 
 Faults that can be mended without a doubt (torn edges, turned faces, doublets, stray vertices) are
-mended first and told. Boundaries and sharp features stay where they are. The table before/after
+mended first and told. Boundaries and sharp features keep their shape. The table before/after
 goes to standard output, or to standard error if standard output takes the mesh or the report.";
 
 /// Clean a mesh: cancel irregular elements and T-junctions, keep the shape

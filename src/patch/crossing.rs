@@ -6,6 +6,7 @@ use crate::mesh::Point;
 use crate::ops::{Refusal, Resample};
 use crate::sqrtcc::{HalfEdge, QuadMesh, Vertex};
 use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
 
 /// A vertex that slides along its feature line.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -41,20 +42,29 @@ impl Shift {
     /// Resamples and slides; on refusal the caller undoes. The vertex that came or was joined.
     pub fn run(&self, mesh: &mut QuadMesh) -> Result<Vertex, Refusal> {
         let vertex = self.resample.run(mesh)?;
+        self.slide(mesh);
+        Ok(vertex)
+    }
+
+    /// Slides alone: what comes or goes has done so.
+    pub fn slide(&self, mesh: &mut QuadMesh) {
         for slide in &self.slides {
             mesh.set_position(slide.vertex, Point::from(slide.to));
         }
-        Ok(vertex)
     }
 
     /// Whether what slides is there, held by a feature, and goes to a finite place.
     fn fits(&self, mesh: &QuadMesh) -> bool {
+        let comes = matches!(self.resample, Resample::Cut { .. });
         self.slides.iter().all(|&Slide { vertex, to }| {
-            // The vertex that comes is the next one.
-            let exists = vertex <= mesh.vertex_ids();
-            let old = vertex < mesh.vertex_ids();
-            let held = |v| mesh.is_alive(v) && !mesh.is_face(v) && mesh.is_held(v);
-            exists && (!old || held(vertex)) && to.iter().all(|x| x.is_finite())
+            let fits = match vertex.cmp(&mesh.vertex_ids()) {
+                Ordering::Less => {
+                    mesh.is_alive(vertex) && !mesh.is_face(vertex) && mesh.is_held(vertex)
+                }
+                Ordering::Equal => comes,
+                Ordering::Greater => false,
+            };
+            fits && to.iter().all(|x| x.is_finite())
         })
     }
 }

@@ -90,10 +90,12 @@ impl Automation<'_> {
                     self.rounds((mesh, &mut contact), &mut schedule, step, watch);
                 }
             }
-            let groups = (Stage::Groups { faces }, lambda);
-            self.rounds((mesh, &mut contact), &mut schedule, groups, watch);
             if i + 1 < self.plan.stages {
                 self.smooth_between(mesh, watch)?;
+            } else {
+                // After all that is greedy: so the global plan never leaves more than that alone.
+                let groups = (Stage::Groups { faces }, lambda);
+                self.rounds((mesh, &mut contact), &mut schedule, groups, watch);
             }
         }
         let types = [Stage::Types];

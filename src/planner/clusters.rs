@@ -79,8 +79,12 @@ impl Clusters {
         most: usize,
     ) -> Option<Region> {
         self.grower.start(mesh);
-        at.iter().for_each(|&h| self.grower.add_sector(mesh, h));
-        faces.iter().for_each(|&f| self.grower.add_face(mesh, f));
+        for &h in at {
+            self.grower.add_sector(mesh, h);
+        }
+        for &f in faces {
+            self.grower.add_face(mesh, f);
+        }
         self.grower.convex(mesh, most).ok()
     }
 

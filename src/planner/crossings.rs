@@ -6,7 +6,6 @@
 
 use super::clusters::{Clusters, Limits, least_after};
 use super::lines::{Line, beside};
-use crate::mesh::Point;
 use crate::ops::Resample;
 use crate::patch::crossing::{Crossing, Shift};
 use crate::patch::{Filling, Refill, Region, fillings};
@@ -148,9 +147,9 @@ fn crossing(
         let line = Line::around(mesh, edge);
         rise += resample.check(mesh).ok()?.delta();
         let vertex = resample.run(mesh).ok()?;
-        let slides = line.slides(mesh, vertex, lines);
-        slides.iter().for_each(|s| mesh.set_position(s.vertex, Point::from(s.to)));
-        shifts.push(Shift { resample, slides });
+        let shift = Shift { resample, slides: line.slides(mesh, vertex, lines) };
+        shift.slide(mesh);
+        shifts.push(shift);
         sides.push((vertex, before, after));
     }
     // Not before all is resampled: a vertex that stays at one line may go at the next.

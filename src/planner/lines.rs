@@ -82,6 +82,8 @@ fn slide(mesh: &mut QuadMesh, v: Vertex, (lines, tolerance): (&SharpLines, f64))
 pub(super) struct Line {
     vertices: Vec<Vertex>,
     points: Vec<Point>,
+    /// The end of the edge that comes second among the vertices.
+    middle: usize,
     /// Length of the edge, in units of the file.
     edge: f64,
 }
@@ -104,27 +106,23 @@ impl Line {
         };
         let mut vertices = half(h, &[mesh.origin(QuadMesh::opposite(h))]);
         vertices.reverse();
+        let middle = vertices.len();
         let onward = half(QuadMesh::opposite(h), &vertices);
         vertices.extend(onward);
         let points = vertices.iter().map(|&v| mesh.position(v)).collect();
         let edge =
             mesh.position(mesh.origin(h)) - mesh.position(mesh.origin(QuadMesh::opposite(h)));
-        Self { vertices, points, edge: edge.norm() }
+        Self { vertices, points, middle, edge: edge.norm() }
     }
 
     /// Where the vertices go once `vertex` has come, or all but one of the ends of the edge have
     /// gone: as densely along the line as they were, with the ends of the part where they are.
     pub(super) fn slides(&self, mesh: &QuadMesh, vertex: Vertex, lines: &SharpLines) -> Vec<Slide> {
-        let mut after: Vec<Vertex> = Vec::new();
-        let middle = self.vertices.iter().position(|&v| !mesh.is_alive(v));
-        if middle.is_some() {
-            after.extend(self.vertices.iter().filter(|&&v| mesh.is_alive(v)));
-        } else {
-            let at = self.cut_at(mesh, vertex);
-            after.extend(&self.vertices[..at]);
-            after.push(vertex);
-            after.extend(&self.vertices[at..]);
+        let mut after = self.vertices.clone();
+        if !after.contains(&vertex) {
+            after.insert(self.middle, vertex);
         }
+        after.retain(|&v| mesh.is_alive(v));
         let (last, ends) = (self.points.len() - 1, after.len() - 1);
         let at = |i: usize| {
             let place = i as f64 * last as f64 / ends as f64;
@@ -135,13 +133,5 @@ impl Line {
         };
         let inner = (1..ends).map(|i| Slide { vertex: after[i], to: at(i).coords.into() });
         inner.collect()
-    }
-
-    /// Before which of the vertices the new one comes.
-    fn cut_at(&self, mesh: &QuadMesh, vertex: Vertex) -> usize {
-        let beside: Vec<Vertex> = mesh.diagonals(vertex).collect();
-        let is_beside = |&v: &Vertex| beside.contains(&v);
-        let both = self.vertices.windows(2).position(|w| w.iter().all(is_beside));
-        both.map_or(1, |i| i + 1)
     }
 }

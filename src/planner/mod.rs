@@ -41,7 +41,7 @@ knobs! {
         relocations: u32 = 1, in 0.0..=1000.0, "count";
         /// What moving elements to a better place must save at least.
         relocation_saves: f64 = 40.0, in 0.0..=100_000.0, "degree-corners";
-        /// Most rounds of the global plan in each stage; 0 leaves the greedy one alone.
+        /// Most rounds of the global plan, after the last stage; 0 leaves the greedy one alone.
         global: u32 = 30, in 0.0..=1000.0, "count";
         /// Feature edges near an element at which a way across is looked for; 0 leaves all features
         /// as they are sampled.
