@@ -5,7 +5,7 @@ use super::contact::Contact;
 use super::cost::CostOptions;
 use super::gate::{GateOptions, Setting, shape_of};
 use super::global::{self, Group, Link};
-use super::lines;
+use super::lines::{self, Rails};
 use super::schedule::{Schedule, Slack, is_poor};
 use super::worker::{Size, Stage, Task};
 use crate::mesh::MeshError;
@@ -45,6 +45,8 @@ pub struct Automation<'a> {
 
 /// Degrees of deviation at a corner that edits may cause even where the input has less.
 const FAIR: f64 = 2.0;
+/// Share of the Hausdorff distance to keep within which vertices of features slide freely.
+const SLIDES_WITHIN: f64 = 0.3;
 /// How many times its even share of the slack in distance an element may use up.
 const GREED: f64 = 16.0;
 
@@ -232,7 +234,9 @@ impl Automation<'_> {
         for (&v, point) in polygons.vertex_ids.iter().zip(points) {
             mesh.set_position(v, point);
         }
-        lines::relax(mesh, self.lines, (self.plan.slides, 0.3 * self.hausdorff()));
+        let tolerance = SLIDES_WITHIN * self.hausdorff();
+        let rails = Rails { reference: self.reference, lines: self.lines, tolerance };
+        lines::relax(mesh, rails, self.plan.slides);
         mesh.commit();
         Ok(())
     }

@@ -5,7 +5,7 @@ use crate::mesh::Point;
 use crate::ops::within_line;
 use crate::patch::crossing::Slide;
 use crate::sqrtcc::{HalfEdge, QuadMesh, Vertex};
-use crate::surface::SharpLines;
+use crate::surface::{Reference, SharpLines};
 use smallvec::SmallVec;
 
 /// Vertices of a line, to either side of where it is resampled, that slide at most.
@@ -30,52 +30,87 @@ pub(super) fn beside(mesh: &QuadMesh, v: Vertex) -> Option<[Vertex; 2]> {
     (a.angle(&-b) <= CORNER_DEG.to_radians()).then_some(ends)
 }
 
+/// What vertices slide on.
+#[derive(Debug, Clone, Copy)]
+pub struct Rails<'a> {
+    /// The surface to stay on.
+    pub reference: &'a Reference,
+    /// Its sharp features.
+    pub lines: &'a SharpLines,
+    /// How far chords may be from the crease, and faces from the surface, if they were nearer before;
+    /// in units of the file.
+    pub tolerance: f64,
+}
+
 /// Lets the vertices within feature lines slide, one after the other, to where the angles around
-/// them deviate less. They end on the crease, and the chords at them within `tolerance` of it (units
-/// of the file) or as near to it as before. O(vertices · sweeps).
-pub fn relax(mesh: &mut QuadMesh, lines: &SharpLines, (sweeps, tolerance): (u32, f64)) {
+/// them deviate less. Those that are on the crease stay on it; others stay. O(vertices · sweeps).
+pub fn relax(mesh: &mut QuadMesh, rails: Rails, sweeps: u32) {
     let within = |&v: &Vertex| beside(mesh, v).is_some();
     let vertices: Vec<Vertex> = mesh.vertices().filter(within).collect();
     for _ in 0..sweeps {
-        let moved = vertices.iter().filter(|&&v| slide(mesh, v, (lines, tolerance))).count();
+        let moved = vertices.iter().filter(|&&v| rails.slide(mesh, v)).count();
         if moved == 0 {
             return;
         }
     }
 }
 
-/// Slides `v` to the best of a few places; whether it moved.
-fn slide(mesh: &mut QuadMesh, v: Vertex, (lines, tolerance): (&SharpLines, f64)) -> bool {
-    let Some(ends) = beside(mesh, v) else { return false };
-    let at = mesh.position(v);
-    let [before, after] = ends.map(|w| mesh.position(w));
-    let bend = |at: &Point| {
-        let off = |end: &Point| {
-            let middle = nalgebra::center(at, end);
-            let near = lines.closest(&middle, (end - at).norm());
-            near.map_or(f64::INFINITY, |on| (on - middle).norm())
+impl Rails<'_> {
+    /// Slides `v` to the best of a few places; whether it moved.
+    fn slide(&self, mesh: &mut QuadMesh, v: Vertex) -> bool {
+        let Some(ends) = beside(mesh, v) else { return false };
+        let at = mesh.position(v);
+        if self.lines.closest(&at, self.tolerance).is_none() {
+            return false;
+        }
+        let [before, after] = ends.map(|w| mesh.position(w));
+        let bend = |at: &Point| {
+            let off = |end: &Point| {
+                let middle = nalgebra::center(at, end);
+                let near = self.lines.closest(&middle, (end - at).norm());
+                near.map_or(f64::INFINITY, |on| (on - middle).norm())
+            };
+            off(&before).max(off(&after))
         };
-        off(&before).max(off(&after))
-    };
-    let most = bend(&at).max(tolerance);
-    let faces: SmallVec<[Vertex; 8]> = mesh.neighbours(v).filter(|&f| !mesh.is_ghost(f)).collect();
-    let now = shape_of(mesh, faces.iter().copied());
-    let mut best = (now, at);
-    for (end, stride) in [before, after].iter().flat_map(|e| STRIDES.map(|s| (e, s))) {
-        let chord = at + (end - at) * stride;
-        // Farther off is another crease.
-        let Some(place) = lines.closest(&chord, most) else { continue };
-        if bend(&place) > most {
-            continue;
+        let most = bend(&at).max(self.tolerance);
+        let faces: SmallVec<[Vertex; 8]> =
+            mesh.neighbours(v).filter(|&f| !mesh.is_ghost(f)).collect();
+        let now = shape_of(mesh, faces.iter().copied());
+        let mut best = (now, at);
+        for (end, stride) in [before, after].iter().flat_map(|e| STRIDES.map(|s| (e, s))) {
+            let chord = (end - at) * stride;
+            // Farther off is another crease.
+            let near = self.tolerance.max(chord.norm()).min(most);
+            let Some(place) = self.lines.closest(&(at + chord), near) else { continue };
+            if bend(&place) > most {
+                continue;
+            }
+            mesh.set_position(v, place);
+            let shape = shape_of(mesh, faces.iter().copied());
+            if shape.angles() < best.0.angles() && shape.is_about_as_good_as(&now) {
+                best = (shape, place);
+            }
         }
-        mesh.set_position(v, place);
-        let shape = shape_of(mesh, faces.iter().copied());
-        if shape.angles() < best.0.angles() && shape.is_about_as_good_as(&now) {
-            best = (shape, place);
+        mesh.set_position(v, best.1);
+        if best.1 == at {
+            return false;
         }
+        let off = self.distance(mesh, &faces);
+        if off > self.tolerance {
+            mesh.set_position(v, at);
+            if off > self.distance(mesh, &faces) {
+                return false;
+            }
+            mesh.set_position(v, best.1);
+        }
+        true
     }
-    mesh.set_position(v, best.1);
-    best.1 != at
+
+    /// How far the middle of a face is from the surface at most.
+    fn distance(&self, mesh: &QuadMesh, faces: &[Vertex]) -> f64 {
+        let off = |&f: &Vertex| self.reference.closest(&mesh.location(f)).distance;
+        faces.iter().map(off).fold(0.0, f64::max)
+    }
 }
 
 /// The part of a feature line around an edge, as it is before the edge is resampled.
