@@ -50,7 +50,10 @@ const MOST_E: [(&str, f64); 17] = [
 ];
 
 /// What is not as it should be yet: mesh, quantity, and how far off it may be until it is mended.
-const NOT_YET: [(&str, &str, f64); 0] = [];
+const NOT_YET: [(&str, &str, f64); 2] =
+    [("rockerarm_im20k", CREASES, 0.0015), ("penguin_mlpair", CREASES, 0.001)];
+
+const CREASES: &str = "mean distance of creases";
 
 const T_JUNCTIONS: &str = "T-junctions";
 const INVERTED: &str = "inverted quads";
@@ -59,8 +62,9 @@ const INVERTED: &str = "inverted quads";
 const MOST_T_JUNCTIONS: f64 = 0.04;
 /// How much larger mean angle deviation and distances to the reference may get.
 const GROWTH: f64 = 1.1;
-/// How much farther from sharp edges of the mesh the creases of the reference may get.
-const FEATURE_GROWTH: f64 = 1.1;
+/// How much farther from edges of the mesh the creases of the reference may get: on the mean, and
+/// at most.
+const CREASE_GROWTH: [f64; 2] = [1.1, 1.25];
 /// Distances are sampled; on a flat plate all there is to see is slivers at its round holes, and
 /// its largest distance is anything from 0.00029 to 0.00037 with other samples.
 const NOISE_REL: [f64; 2] = [1e-6, 5e-5];
@@ -162,13 +166,13 @@ fn judge_boundary(input: &Input, cleaned: &PolyMesh, faults: &mut Faults) {
     });
 }
 
-/// Creases of the reference are as near to sharp edges as they were.
+/// Creases of the reference are as near to edges as they were.
 fn judge_features(before: &Metrics, after: &Metrics, faults: &mut Faults) {
-    let distance = |m: &Metrics| m.reference.as_ref()?.features.to_sharp_mesh_edge;
+    let distance = |m: &Metrics| m.reference.as_ref()?.features.to_any_mesh_edge;
     let (Some(old), Some(new)) = (distance(before), distance(after)) else { return };
-    let [mean, largest] = NOISE_REL;
-    faults.at_most("mean distance of creases", new.mean, FEATURE_GROWTH * old.mean + mean);
-    faults.at_most("largest distance of creases", new.max, FEATURE_GROWTH * old.max + largest);
+    let ([mean, largest], [on_mean, at_most]) = (NOISE_REL, CREASE_GROWTH);
+    faults.at_most(CREASES, new.mean, on_mean * old.mean + mean);
+    faults.at_most("largest distance of creases", new.max, at_most * old.max + largest);
 }
 
 /// How many of `old` are not in `new`; both are sorted.

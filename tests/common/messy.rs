@@ -2,12 +2,13 @@
 //! holes, and what must be true of them after cleaning.
 
 use super::lifted::{Dice, mess_up, no_features};
-use super::{Segment, segments, shape};
+use super::{segments, shape};
 use quadmend::config::Config;
 use quadmend::mesh::{MendPolicy, Point, PolyMesh, Topology, mend, shapes};
+use quadmend::metrics::Metrics;
 use quadmend::pipeline::Cleaned;
+use quadmend::planner::gate::GateOptions;
 use quadmend::sqrtcc::{lift, lower};
-use quadmend::surface::{Reference, mesh_features};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// How much larger the distance to a reference may get; it is measured by samples.
@@ -63,8 +64,7 @@ impl Messy {
         let mut faults = Faults { name: &self.name, lines: Vec::new() };
         judge_counts(cleaned, config, &mut faults);
         judge_distance((&mended, self.reference.is_none()), cleaned, config, &mut faults);
-        let surface = self.reference.as_ref().unwrap_or(&mended);
-        judge_lines(&mended, surface, cleaned, config, &mut faults);
+        judge_lines(&mended, cleaned, config, &mut faults);
         faults.lines
     }
 }
@@ -114,8 +114,7 @@ fn judge_distance(
     let gate = &config.gate;
     // A flat mesh is on its reference to the bit.
     let is_exact = old.rms.is_some_and(|rms| rms < NOISE_REL);
-    // Single edits may go so far; what the last smoothing cannot take back stays.
-    let own = gate.own_hausdorff_edges * gate.hausdorff * gate.distance + PROBE_GAP_EDGES;
+    let own = room(gate);
     for (what, of, own) in [
         ("Hausdorff", [old.hausdorff, new.hausdorff], own),
         ("RMS", [old.rms, new.rms], gate.own_rms_edges * gate.rms),
@@ -129,14 +128,8 @@ fn judge_distance(
     }
 }
 
-/// Topology, boundaries and features are those of the input, bit for bit.
-fn judge_lines(
-    mended: &PolyMesh,
-    surface: &PolyMesh,
-    cleaned: &Cleaned,
-    config: &Config,
-    faults: &mut Faults,
-) {
+/// Topology and boundaries are those of the input, bit for bit, and features where they were.
+fn judge_lines(mended: &PolyMesh, cleaned: &Cleaned, config: &Config, faults: &mut Faults) {
     let result = &cleaned.mesh;
     let (before, after) = (Topology::new(mended), Topology::new(result));
     let shapes = [shape(mended), shape(result)];
@@ -144,13 +137,22 @@ fn judge_lines(
     let boundary = |m: &PolyMesh, t: &Topology| segments(m, t, t.boundary_half_edges());
     let [old, new] = [boundary(mended, &before), boundary(result, &after)];
     faults.unless(old == new, || "the boundary is not what it was".to_owned());
-    let reference = Reference::new(surface).expect("it was cleaned on it");
-    let features = mesh_features(mended, &before, &reference, &config.features);
-    let old = segments(mended, &before, features.ones().map(|h| h as u32));
-    let new: BTreeSet<Segment> =
-        segments(result, &after, 0..result.corner_count() as u32).into_iter().collect();
-    let gone = old.iter().filter(|s| !new.contains(*s)).count();
-    faults.unless(gone == 0, || format!("{gone} of {} feature edges are gone", old.len()));
+    // Features may be resampled, and their vertices slide: the creases are where they were.
+    let creases = |m: &Metrics| m.reference.as_ref()?.features.to_any_mesh_edge.map(|d| d.max);
+    let report = &cleaned.report;
+    if let (Some(old), Some(new)) = (creases(&report.before), creases(&report.after)) {
+        let edge = quadmend::surface::mean_edge(mended, &before) / mended.diagonal();
+        let most = GROWTH * old + room(&config.gate) * edge;
+        faults.unless(new <= most, || {
+            format!("creases {old:.5} -> {new:.5} from the nearest edge, at most {most:.5}")
+        });
+    }
+}
+
+/// How far single edits may leave the surface, in mean edges: what the last smoothing cannot take
+/// back stays.
+fn room(gate: &GateOptions) -> f64 {
+    gate.own_hausdorff_edges * gate.hausdorff * gate.distance + PROBE_GAP_EDGES
 }
 
 /// A box with edges of random lengths.
