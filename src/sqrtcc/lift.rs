@@ -8,7 +8,7 @@ use super::QuadMesh;
 use super::quad_mesh::{FACE, GHOST, HELD, QuadKind};
 use crate::mesh::{NONE, Point, PolyMesh, Topology};
 use fixedbitset::FixedBitSet;
-use std::f64::consts::FRAC_PI_2;
+use smallvec::SmallVec;
 use thiserror::Error;
 
 /// Why a mesh cannot be lifted. [`crate::mesh`] mends all of these.
@@ -212,12 +212,14 @@ impl QuadMesh {
             if self.is_face(v) || self.is_ghost(v) || !self.is_held(v) {
                 continue;
             }
-            let starts: Vec<u32> =
+            let starts: SmallVec<[u32; 8]> =
                 self.outgoing(v).filter(|&h| self.is_frozen(Self::quad(self.twin(h)))).collect();
-            for first in starts {
-                let quads = (self.sector_angle(first) / FRAC_PI_2).round().clamp(1.0, 8.0);
+            let angles: SmallVec<[f64; 8]> =
+                starts.iter().map(|&first| self.sector_angle(first).to_degrees()).collect();
+            let is_inside = self.neighbours(v).all(|f| !self.is_ghost(f));
+            for (&first, quads) in starts.iter().zip(ideals(&angles, is_inside)) {
                 let slot = self.ideal_slot(first);
-                self.ideal[slot] = quads as u8;
+                self.ideal[slot] = quads;
             }
         }
     }
@@ -241,5 +243,60 @@ impl QuadMesh {
                 return angle;
             }
         }
+    }
+}
+
+/// How many degrees farther from its right angles a sector may be for its vertex to be regular.
+const REGULAR_IS_WORTH_DEG: f64 = 45.0;
+
+/// The number of faces whose corners come nearest to right angles, for each sector of a vertex. One
+/// more or less in one of them makes a vertex inside the surface regular where that hardly matters:
+/// the corner of an octagonal hole, 225°, may have two faces as well as three, and two are regular.
+fn ideals(angles: &[f64], is_inside: bool) -> SmallVec<[u8; 8]> {
+    let off = |angle: f64, faces: u8| (90.0 * f64::from(faces) - angle).abs();
+    let mut ideals: SmallVec<[u8; 8]> =
+        angles.iter().map(|angle| (angle / 90.0).round().clamp(1.0, 8.0) as u8).collect();
+    let all: i32 = ideals.iter().map(|&faces| i32::from(faces)).sum();
+    if is_inside && (all - 4).abs() == 1 {
+        let other = |faces: u8| if all > 4 { faces - 1 } else { faces + 1 };
+        let costs = angles.iter().zip(&ideals).map(|(&angle, &faces)| {
+            if other(faces) == 0 {
+                f64::INFINITY
+            } else {
+                off(angle, other(faces)) - off(angle, faces)
+            }
+        });
+        let cheapest = costs.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((i, _)) = cheapest.filter(|&(_, cost)| cost <= REGULAR_IS_WORTH_DEG) {
+            ideals[i] = other(ideals[i]);
+        }
+    }
+    ideals
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ideals;
+
+    #[test]
+    fn corners_come_near_to_right_angles() {
+        assert_eq!(ideals(&[181.0, 178.0], true)[..], [2, 2]);
+        assert_eq!(ideals(&[268.0, 91.0, 90.0], true)[..], [3, 1, 1]);
+        assert_eq!(ideals(&[92.0, 88.0, 90.0], true)[..], [1, 1, 1]);
+        assert_eq!(ideals(&[20.0, 340.0], true)[..], [1, 4]);
+    }
+
+    #[test]
+    fn a_vertex_is_regular_where_that_hardly_matters() {
+        assert_eq!(ideals(&[225.0, 90.0, 90.0], true)[..], [2, 1, 1]);
+        assert_eq!(ideals(&[88.0, 240.0, 91.0], true)[..], [1, 2, 1]);
+        assert_eq!(ideals(&[130.0, 90.0, 90.0], true)[..], [2, 1, 1]);
+        assert_eq!(ideals(&[250.0, 90.0, 90.0], true)[..], [3, 1, 1]);
+    }
+
+    #[test]
+    fn on_a_boundary_nothing_is_gained_by_that() {
+        assert_eq!(ideals(&[226.0], false)[..], [3]);
+        assert_eq!(ideals(&[130.0, 91.0], false)[..], [1, 1]);
     }
 }

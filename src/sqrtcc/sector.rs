@@ -1,5 +1,6 @@
 //! Ideal valences. Frozen quads (boundary, features) divide the faces around a p-vertex into
-//! sectors; a sector of angle θ wants max(1, round(θ/90°)) faces, everything else wants 4.
+//! sectors; a sector of angle θ wants max(1, round(θ/90°)) faces, or one more or less where the vertex
+//! is regular with that and θ leaves the choice; everything else wants 4.
 //!
 //! Source: Peng & Wonka 2013, section 2.1, extended to features.
 
