@@ -124,13 +124,18 @@ impl Op {
     /// planned on a snapshot with fewer elements.
     #[must_use]
     pub fn rebased(self, from: u32, to: u32) -> Self {
-        let shift = |h: HalfEdge| if h >= from { h - from + to } else { h };
+        let shift = |h| rebased(h, from, to);
         match self {
             Self::Flip(op) => Self::Flip(Flip { edge: shift(op.edge), ..op }),
             Self::Collapse(op) => Self::Collapse(Collapse { edge: shift(op.edge) }),
             Self::Split(op) => Self::Split(Split { first: shift(op.first), last: shift(op.last) }),
         }
     }
+}
+
+/// `id`, with those from `from` on moved to `to` on.
+pub(crate) fn rebased(id: u32, from: u32, to: u32) -> u32 {
+    if id >= from { id - from + to } else { id }
 }
 
 fn alive(mesh: &QuadMesh, h: HalfEdge) -> Result<(), Refusal> {

@@ -10,7 +10,7 @@
 //! to resample.
 
 use super::{
-    Legal, MAX_VALENCE, Refusal, alive, change, collapse, debug_check, may_gain, may_lose,
+    Legal, MAX_VALENCE, Refusal, alive, change, collapse, debug_check, may_gain, may_lose, rebased,
 };
 use crate::sqrtcc::{HalfEdge, QuadKind, QuadMesh, Vertex};
 use serde::{Deserialize, Serialize};
@@ -43,10 +43,10 @@ impl Resample {
     /// The same with the half-edges from `from` on moved to `to` on.
     #[must_use]
     pub fn rebased(self, from: u32, to: u32) -> Self {
-        let shift = |h: HalfEdge| if h >= from { h - from + to } else { h };
+        let edge = rebased(self.edge(), from, to);
         match self {
-            Self::Cut { edge } => Self::Cut { edge: shift(edge) },
-            Self::Join { edge } => Self::Join { edge: shift(edge) },
+            Self::Cut { .. } => Self::Cut { edge },
+            Self::Join { .. } => Self::Join { edge },
         }
     }
 

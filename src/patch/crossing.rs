@@ -3,7 +3,7 @@
 
 use super::{Misfit, Refill};
 use crate::mesh::Point;
-use crate::ops::{Refusal, Resample};
+use crate::ops::{Refusal, Resample, rebased};
 use crate::sqrtcc::{HalfEdge, QuadMesh, Vertex};
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
@@ -97,19 +97,10 @@ impl Crossing {
     /// The same on a mesh where new ids begin at `now` instead of `planned` (vertices, quads).
     #[must_use]
     pub fn rebased(mut self, planned: (u32, u32), now: (u32, u32)) -> Self {
-        let vertex = |v: &mut Vertex| {
-            if *v >= planned.0 {
-                *v = *v - planned.0 + now.0;
-            }
-        };
-        let (first, to) = (4 * planned.1, 4 * now.1);
-        let half_edge = |h: &mut HalfEdge| {
-            if *h >= first {
-                *h = *h - first + to;
-            }
-        };
+        let vertex = |v: &mut Vertex| *v = rebased(*v, planned.0, now.0);
+        let half_edge = |h: &mut HalfEdge| *h = rebased(*h, 4 * planned.1, 4 * now.1);
         for shift in &mut self.shifts {
-            shift.resample = shift.resample.rebased(first, to);
+            shift.resample = shift.resample.rebased(4 * planned.1, 4 * now.1);
             shift.slides.iter_mut().for_each(|slide| vertex(&mut slide.vertex));
         }
         for refill in &mut self.refills {

@@ -54,7 +54,7 @@ impl Automation<'_> {
     /// Edits and smooths `mesh`; what was done. If cancelled, no more edits are looked for, and the
     /// mesh is smoothed for as many iterations as a hurried run has.
     pub fn run(&self, mesh: &mut QuadMesh, watch: &dyn Watch) -> Result<Schedule, MeshError> {
-        let faces = mesh.vertices().filter(|&v| mesh.is_face(v)).count();
+        let faces = faces(mesh).count();
         let size =
             Size { start: self.faces as i64, now: faces as i64, drift: self.plan.size_drift };
         let mut schedule = Schedule::new(size);
@@ -244,7 +244,7 @@ impl Automation<'_> {
 
 /// The faces of the polygon mesh.
 fn faces(mesh: &QuadMesh) -> impl Iterator<Item = Vertex> + '_ {
-    mesh.vertices().filter(|&f| mesh.is_face(f) && !mesh.is_ghost(f))
+    mesh.vertices().filter(|&f| mesh.is_face(f))
 }
 
 /// Number of corners of all faces.

@@ -42,8 +42,7 @@ impl Clusters {
         } else {
             self.around_sector(mesh, mesh.out(seed), limits, &mut regions);
         }
-        regions.sort_by_key(|r| r.faces.len());
-        regions
+        smallest_first(regions)
     }
 
     /// The convex disk around everything in `joined`, if its irregularity can fall.
@@ -66,8 +65,7 @@ impl Clusters {
     pub fn beside(&mut self, mesh: &QuadMesh, at: HalfEdge, limits: Limits) -> Vec<Region> {
         let mut regions = Vec::new();
         self.around_sector(mesh, at, limits, &mut regions);
-        regions.sort_by_key(|r| r.faces.len());
-        regions
+        smallest_first(regions)
     }
 
     /// The convex disk around the origins of `at`, on their sides, and `faces`.
@@ -164,7 +162,8 @@ impl Clusters {
         self.forget();
     }
 
-    /// The irregular elements nearest to the origin of `at` on the side of `at`, by steps in Q that do not cross frozen lines.
+    /// The irregular elements nearest to the origin of `at` on the side of `at`, by steps in Q that
+    /// do not cross frozen lines.
     fn nearest(&mut self, mesh: &QuadMesh, at: HalfEdge, limits: Limits) -> Vec<Vertex> {
         let seed = mesh.origin(at);
         self.parent.resize(mesh.vertex_ids() as usize, NONE);
@@ -236,6 +235,11 @@ fn add_way(
         at = from;
     }
     grower.face_count() > before
+}
+
+fn smallest_first(mut regions: Vec<Region>) -> Vec<Region> {
+    regions.sort_by_key(|region| region.faces.len());
+    regions
 }
 
 fn is_too_large(region: &Result<Region, Stop>) -> bool {

@@ -176,9 +176,9 @@ fn crossing(
     let hope = |region: &Region| region.irregularity as i32 - least_after(region) as i32;
     let faces = |&(i, k): &(usize, usize)| near[i].faces.len() + far[k].faces.len();
     let all = (0..near.len()).flat_map(|i| (0..far.len()).map(move |k| (i, k)));
+    let pays = |&(i, k): &(usize, usize)| hope(&near[i]) + hope(&far[k]) > rise;
     let mut pairs: Vec<(usize, usize)> =
-        all.filter(|&(i, k)| hope(&near[i]) + hope(&far[k]) > rise).collect();
-    pairs.retain(|pair| faces(pair) <= left);
+        all.filter(|pair| pays(pair) && faces(pair) <= left).collect();
     pairs.sort_by_key(faces);
     let (mut of_near, mut of_far) = (vec![None; near.len()], vec![None; far.len()]);
     for (i, k) in pairs {

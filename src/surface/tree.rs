@@ -181,11 +181,12 @@ impl Tree {
 }
 
 impl Tree {
-    /// Whether some triangle is at most `radius` away. O(log n) expected.
+    /// The closest point, if it is at most `radius` away. O(log n) expected.
     pub(super) fn closest(&self, query: &Point, radius: f64) -> Option<Hit> {
         self.search(query, Best::within(radius), |_| true, CLOSEST).hit()
     }
 
+    /// Whether some triangle is at most `radius` away. O(log n) expected.
     pub(super) fn is_within(&self, query: &Point, radius: f64) -> bool {
         self.near(query, radius).is_some()
     }
