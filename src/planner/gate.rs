@@ -19,9 +19,9 @@ knobs! {
         /// Rings of faces around an edit that relax with it.
         rings: u32 = 3, in 1.0..=12.0, "rings";
         /// Iterations of relaxing after single operations and walks.
-        sweeps: u32 = 15, in 1.0..=1000.0, "count";
+        sweeps: u32 = 50, in 1.0..=1000.0, "count";
         /// Iterations of relaxing after a refill, beside the square root of its number of faces.
-        refill_sweeps: u32 = 20, in 1.0..=1000.0, "count";
+        refill_sweeps: u32 = 30, in 1.0..=1000.0, "count";
         /// Least scaled Jacobian of a quad, unless it was less before.
         min_jacobian: f64 = 0.4, in -1.0..=1.0, "1";
         /// Distance to the reference that an edit may cause before the final fit, which takes

@@ -375,23 +375,22 @@ impl Kernel {
         moved.norm_squared() / edge2
     }
 
-    /// Projects every free vertex that is not where it was last projected.
+    /// Projects every free vertex that is not where it was last projected. Momentum is kept.
     pub(super) fn land(&mut self, reference: &Reference, setting: &Setting) {
         let reach = (2.0 * self.mean_size).sqrt();
-        let land = |vertex: &mut Vertex| {
+        let land = |(vertex, lead): (&mut Vertex, &mut Point)| {
             if !vertex.held && vertex.point != vertex.based {
+                let before = vertex.point;
                 settle(vertex, reference, setting.sign, reach);
+                *lead += vertex.point - before;
             }
         };
         if setting.parallel {
-            self.vertices.par_chunks_mut(CHUNK).for_each(|c| c.iter_mut().for_each(land));
+            let chunks = self.vertices.par_chunks_mut(CHUNK).zip(self.lead.par_chunks_mut(CHUNK));
+            chunks.for_each(|(vertices, lead)| vertices.iter_mut().zip(lead).for_each(land));
         } else {
-            self.vertices.iter_mut().for_each(land);
+            self.vertices.iter_mut().zip(&mut self.lead).for_each(land);
         }
-        for (lead, vertex) in self.lead.iter_mut().zip(&self.vertices) {
-            *lead = vertex.point;
-        }
-        self.pace = 1;
     }
 
     /// Shifts every free vertex along its normal so that the faces around it lie on the reference
