@@ -1,14 +1,16 @@
 //! Random quad-dominant meshes: regular shapes with cuts, T-junctions, splits, collapses and
 //! holes, and what must be true of them after cleaning.
 
-use super::lifted::{Dice, mess_up, no_features};
+use super::lifted::{Dice, lifted, mess_up};
 use super::{segments, shape};
 use quadmend::config::Config;
-use quadmend::mesh::{MendPolicy, Point, PolyMesh, Topology, mend, shapes};
+use quadmend::mesh::{MendPolicy, Point, PolyMesh, Topology, Vector, mend, shapes};
 use quadmend::metrics::Metrics;
+use quadmend::moves::dipole::{Dipole, STEPS};
 use quadmend::pipeline::Cleaned;
 use quadmend::planner::gate::GateOptions;
-use quadmend::sqrtcc::{lift, lower};
+use quadmend::sqrtcc::{QuadMesh, lower};
+use quadmend::surface::triangulate;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// How much larger the distance to a reference may get; it is measured by samples.
@@ -56,6 +58,32 @@ impl Messy {
         let surface = if reference.is_some() { "" } else { ", its own surface" };
         let name = format!("{seed}: {kind}, {} faces{surface}", mesh.face_count());
         Self { name, mesh, reference }
+    }
+
+    /// A connected mesh of about so many faces on a bumpy ring, as messy as that of a field-aligned
+    /// remesher, and a scan of that ring: triangles, twice as many. O(faces).
+    pub(crate) fn scanned(seed: u64, faces: u32) -> Self {
+        let mut dice = Dice(seed.wrapping_mul(0x2545_f491_4f6c_dd1d));
+        // Squares: the ring is as many times longer than it is thick.
+        let rows = (f64::from(faces) / RING).sqrt();
+        let (rows, columns) = (rows as u32, (RING * rows) as u32);
+        let mut q = lifted(&shapes::torus(columns, rows));
+        mess_up(&mut q, &mut dice, faces as usize / 130);
+        scattered(&mut q, &mut dice, 16);
+        let mesh = lower(&q, &[String::new()]).expect("a mesh").mesh;
+        let mesh = cut(&mesh, &mut dice, faces as usize / 800);
+        let mut mesh = hung(&mesh, &mut dice, faces as usize / 400);
+        evened(&mut mesh, 10);
+        let bumps = Bumps::new(&mut dice);
+        let edge = std::f64::consts::TAU / f64::from(rows);
+        bumps.on(&mut mesh, 0.03 * edge, &mut dice);
+        // No vertex of the one is at one of the other.
+        let fine = triangulate(&shapes::torus(columns + columns / 50, rows + rows / 50 + 1));
+        let mut scan = PolyMesh::new(fine.points, fine.triangles).expect("a mesh");
+        evened(&mut scan, 1);
+        bumps.on(&mut scan, 0.005 * edge, &mut dice);
+        let name = format!("{seed}: bumpy ring, {} faces", mesh.face_count());
+        Self { name, mesh, reference: Some(scan) }
     }
 
     /// What is wrong with the result, a line each.
@@ -196,7 +224,7 @@ fn compact(points: &[Point], mut faces: Vec<Vec<u32>>) -> PolyMesh {
 
 /// The mesh after random flips, collapses and splits in √CC.
 fn operated(mesh: &PolyMesh, dice: &mut Dice, edits: usize) -> PolyMesh {
-    let mut q = lift(mesh, &no_features(mesh)).expect("shapes can be lifted");
+    let mut q = lifted(mesh);
     mess_up(&mut q, dice, edits);
     lower(&q, mesh.group_names()).expect("a mesh").mesh
 }
@@ -218,6 +246,12 @@ fn cut(mesh: &PolyMesh, dice: &mut Dice, cuts: usize) -> PolyMesh {
 fn hung(mesh: &PolyMesh, dice: &mut Dice, cuts: usize) -> PolyMesh {
     let mut points = mesh.points().to_vec();
     let mut faces: Vec<Vec<u32>> = mesh.faces().map(<[u32]>::to_vec).collect();
+    let mut at = vec![Vec::new(); points.len()];
+    for (face, f) in faces.iter().zip(0..) {
+        for &v in face {
+            at[v as usize].push(f);
+        }
+    }
     for _ in 0..cuts {
         let f = dice.below(faces.len() as u32) as usize;
         let [a, b, c, d] = faces[f][..] else { continue };
@@ -228,20 +262,97 @@ fn hung(mesh: &PolyMesh, dice: &mut Dice, cuts: usize) -> PolyMesh {
         let (m, n) = (middle(a, b), middle(c, d));
         faces[f] = vec![a, m, n, d];
         faces.push(vec![m, b, c, n]);
+        let new = faces.len() - 1;
+        for v in [b, c] {
+            at[v as usize].push(new);
+        }
+        at.extend([vec![f, new], vec![f, new]]);
         for (u, v, w) in [(a, b, m), (c, d, n)] {
-            insert(&mut faces, f, (u, v), w);
+            let beyond =
+                at[u as usize].iter().find(|&&g| g != f && insert(&mut faces[g], (u, v), w));
+            if let Some(&g) = beyond {
+                at[w as usize].push(g);
+            }
         }
     }
     PolyMesh::new(points, faces).expect("a mesh")
 }
 
-/// Puts `w` on the edge from `v` to `u` of the neighbour across it, if there is one.
-fn insert(faces: &mut [Vec<u32>], not: usize, (u, v): (u32, u32), w: u32) {
-    for (_, face) in faces.iter_mut().enumerate().filter(|(f, _)| *f != not) {
-        let n = face.len();
-        if let Some(at) = (0..n).find(|&k| (face[k], face[(k + 1) % n]) == (v, u)) {
-            face.insert(at + 1, w);
-            return;
+/// Puts `w` on the edge of a face from `v` to `u`, if it has one; whether it has.
+fn insert(face: &mut Vec<u32>, (u, v): (u32, u32), w: u32) -> bool {
+    let n = face.len();
+    let edge = (0..n).find(|&k| (face[k], face[(k + 1) % n]) == (v, u));
+    edge.map(|at| face.insert(at + 1, w)).is_some()
+}
+
+/// Lets each dislocation walk some steps on its own, so that what was made together is apart.
+fn scattered(q: &mut QuadMesh, dice: &mut Dice, most: u32) {
+    let all: Vec<Dipole> = Dipole::all(q).collect();
+    for start in all {
+        let (way, steps) = (STEPS[dice.below(STEPS.len() as u32) as usize], dice.below(most));
+        let mut at = Some(start).filter(|d| q.is_quad_alive(d.0 / 4) && d.stands(q));
+        for _ in 0..steps {
+            let stepped = at.and_then(|d| d.step(q, way).ok()).filter(|done| done.delta == 0);
+            at = stepped.and_then(|done| done.dipole);
         }
     }
+}
+
+/// Radius of a ring whose tube has the radius 1.
+const RING: f64 = 5.0;
+
+/// The direction from the axis of a ring, and that from the middle of its tube.
+fn directions(p: &Point, radius: f64) -> (Vector, Vector) {
+    let out = Vector::new(p.x, p.y, 0.0).normalize();
+    (out, (p.coords - out * radius).normalize())
+}
+
+/// A torus as a ring, on which vertices are moved to the mean of the faces around them.
+fn evened(torus: &mut PolyMesh, passes: usize) {
+    let on_ring = |p: &Point, radius: f64| {
+        let (out, normal) = directions(p, radius);
+        Point::from(out * RING + normal)
+    };
+    torus.set_points(torus.points().iter().map(|p| on_ring(p, 3.0)).collect());
+    for _ in 0..passes {
+        let mut sums = vec![(Vector::zeros(), 0.0); torus.vertex_count()];
+        for f in 0..torus.face_count() {
+            let middle = torus.centre(f).coords;
+            for &v in torus.face(f) {
+                let (sum, count) = &mut sums[v as usize];
+                (*sum, *count) = (*sum + middle, *count + 1.0);
+            }
+        }
+        let mean = |(sum, count): (Vector, f64)| on_ring(&Point::from(sum / count), RING);
+        torus.set_points(sums.into_iter().map(mean).collect());
+    }
+}
+
+/// Waves on a ring: direction times frequency, phase, and height.
+struct Bumps(Vec<(Vector, f64, f64)>);
+
+impl Bumps {
+    fn new(dice: &mut Dice) -> Self {
+        let wave = |dice: &mut Dice| {
+            let along = Vector::from([0; 3].map(|_| 1.5 * symmetric(dice)));
+            (along, 3.0 * symmetric(dice), 0.05)
+        };
+        Self((0..12).map(|_| wave(dice)).collect())
+    }
+
+    /// The ring with the waves, each vertex moved by up to so much in all directions.
+    fn on(&self, ring: &mut PolyMesh, noise: f64, dice: &mut Dice) {
+        let height = |p: &Point| {
+            let waves = self.0.iter();
+            waves.map(|(k, phase, height)| height * (k.dot(&p.coords) + phase).sin()).sum::<f64>()
+        };
+        let mut shake = || Vector::from([0; 3].map(|_| noise * symmetric(dice)));
+        let place = |p: &Point| p + directions(p, RING).1 * height(p) + shake();
+        ring.set_points(ring.points().iter().map(place).collect());
+    }
+}
+
+/// A number between −1 and 1.
+fn symmetric(dice: &mut Dice) -> f64 {
+    f64::from(dice.below(2001)) / 1000.0 - 1.0
 }
