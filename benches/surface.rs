@@ -29,7 +29,7 @@ fn closest(c: &mut Criterion) {
     });
     group.bench_function("facing", |b| {
         let facing = |(p, h): &(Point, Hit)| {
-            surface.closest_facing(p, surface.normal(h.triangle), h.triangle, 0.1).distance
+            surface.closest_facing(p, &surface.normal(h.triangle), h.triangle, 0.1).distance
         };
         b.iter(|| queries.iter().map(facing).sum::<f64>());
     });

@@ -172,7 +172,7 @@ impl OneWay {
 impl Orientation {
     /// `at_centres` has the triangle of `surface` that is nearest to the centre of each face.
     fn new(shape: &Shape, surface: &Reference, at_centres: &[u32]) -> Self {
-        let alike = |(n, &t): (&crate::mesh::Vector, &u32)| n.dot(surface.normal(t));
+        let alike = |(n, &t): (&crate::mesh::Vector, &u32)| n.dot(&surface.normal(t));
         let cosines: Vec<f64> = shape.normals.iter().zip(at_centres).map(alike).collect();
         // The normal of a face without area is NaN: such a face looks nowhere and counts as well.
         let right = cosines.iter().filter(|&&c| c >= 0.0).count();

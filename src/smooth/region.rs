@@ -45,7 +45,7 @@ pub(super) fn vote<'h>(
     reference: &Reference,
     hits: impl Iterator<Item = (usize, &'h Hit)>,
 ) -> Orientation {
-    let vote = |(f, hit): (usize, &Hit)| mesh.area_vector(f).dot(reference.normal(hit.triangle));
+    let vote = |(f, hit): (usize, &Hit)| mesh.area_vector(f).dot(&reference.normal(hit.triangle));
     if hits.map(vote).sum::<f64>() < 0.0 { Orientation::Against } else { Orientation::Along }
 }
 

@@ -120,11 +120,9 @@ impl SharpLines {
             return;
         }
         // A segment is a triangle with a double corner.
-        let flat = |s: u32| {
-            let [a, b] = self.segments[s as usize];
-            [a, b, b]
-        };
-        let (tree, order) = Tree::build(self.segments.len(), flat);
+        let flat = |s: u32| [2 * s, 2 * s + 1, 2 * s + 1];
+        let ends = self.segments.as_flattened().to_vec();
+        let (tree, order) = Tree::build(ends, self.segments.len(), flat);
         self.segments = order.iter().map(|&s| self.segments[s as usize]).collect();
         self.chain = order.iter().map(|&s| self.chain[s as usize]).collect();
         self.tree = Some(tree);

@@ -43,11 +43,11 @@ pub struct Hit {
 /// their own; queries are deterministic (the smallest triangle number wins a tie).
 #[derive(Debug, Clone)]
 pub struct Reference {
-    points: Vec<Point>,
-    triangles: Vec<[u32; 3]>,
+    /// Face of the mesh of each triangle.
     face: Vec<u32>,
     /// Number of each triangle in the triangulation of the mesh.
     source: Vec<u32>,
+    /// Unit normals, unless the surface is that of a mesh in work, which is hardly asked for any.
     normals: Vec<Vector>,
     diagonal: f64,
     area: f64,
@@ -61,87 +61,79 @@ impl Reference {
     /// O(n log n).
     pub fn new(mesh: &PolyMesh) -> Result<Self, SurfaceError> {
         let mut surface = Self::plain(mesh)?;
+        let numbers = (0..surface.source.len() as u32).into_par_iter();
+        surface.normals = numbers.map(|t| surface.normal(t)).collect();
         let topology = Topology::new(mesh);
         surface.creases = creases(mesh, &topology);
         surface.borders = border_edges(mesh, &topology);
         Ok(surface)
     }
 
-    /// Like [`Reference::new`] without creases and borders: for distances to a mesh in work.
+    /// Like [`Reference::new`] without creases, borders and kept normals: for distances to a mesh in work.
     /// O(n log n), parallel.
     pub fn plain(mesh: &PolyMesh) -> Result<Self, SurfaceError> {
-        let cut = triangulate(mesh);
-        let solid = solid(&cut, mesh);
+        let Triangulation { points, triangles, face } = triangulate(mesh);
+        let is_solid = solid(&points, mesh);
+        let numbers = (0..triangles.len() as u32).into_par_iter();
+        let solid: Vec<u32> = numbers.filter(|&t| is_solid(&triangles[t as usize])).collect();
         if solid.is_empty() {
             return Err(SurfaceError::Empty { faces: mesh.face_count() });
         }
-        let (tree, order) = Tree::build(solid.len(), |k| cut.corners(solid[k as usize]));
-        let source = order.into_iter().map(|k| solid[k as usize]).collect();
-        Ok(Self::of(cut, source, tree, mesh.diagonal()))
+        drop(is_solid);
+        let corners = |k: u32| triangles[solid[k as usize] as usize];
+        let (tree, order) = Tree::build(points, solid.len(), corners);
+        let source: Vec<u32> = order.into_iter().map(|k| solid[k as usize]).collect();
+        let mut surface = Self {
+            face: source.par_iter().map(|&t| face[t as usize]).collect(),
+            source,
+            normals: Vec::new(),
+            area: 0.0,
+            diagonal: mesh.diagonal(),
+            tree,
+            creases: Vec::new(),
+            borders: Vec::new(),
+        };
+        surface.measure_area();
+        Ok(surface)
     }
 
     /// The surface of `mesh`, whose faces are those of this surface in other places. Triangles keep
     /// their numbers as long as all have an area. O(n), parallel.
     pub fn moved(mut self, mesh: &PolyMesh) -> Result<Self, SurfaceError> {
-        let cut = triangulate(mesh);
-        let solid = solid(&cut, mesh);
-        let mut kept = FixedBitSet::with_capacity(cut.triangles.len());
-        kept.extend(self.source.iter().map(|&t| t as usize));
-        if solid.len() != self.source.len() || !solid.iter().all(|&t| kept.contains(t as usize)) {
+        let Triangulation { points, triangles, .. } = triangulate(mesh);
+        let is_solid = solid(&points, mesh);
+        let count = triangles.par_iter().filter(|t| is_solid(t)).count();
+        let stays = |&s: &u32| triangles.get(s as usize).is_some_and(&is_solid);
+        if count != self.source.len() || !self.source.par_iter().all(stays) {
             drop(self);
             return Self::plain(mesh);
         }
+        drop(is_solid);
         let source = &self.source;
-        self.tree.follow(|k| cut.corners(source[k as usize]));
-        self.triangles
-            .par_iter_mut()
-            .zip(source)
-            .for_each(|(t, &s)| *t = cut.triangles[s as usize]);
-        self.points = cut.points;
+        self.tree.follow(points, |k| triangles[source[k as usize] as usize]);
+        self.normals = Vec::new();
         self.diagonal = mesh.diagonal();
-        self.measure_areas();
+        self.measure_area();
         Ok(self)
     }
 
-    /// Finds the normals and the area of the triangles as they are.
-    fn measure_areas(&mut self) {
-        let areas: Vec<Vector> = (0..self.source.len() as u32)
-            .into_par_iter()
-            .map(|t| area_vector(self.tree.corners(t)))
-            .collect();
-        self.area = areas.iter().map(Vector::norm).sum();
-        self.normals = areas;
-        self.normals.par_iter_mut().for_each(|n| *n /= n.norm());
-    }
-
-    fn of(cut: Triangulation, source: Vec<u32>, tree: Tree, diagonal: f64) -> Self {
-        let Triangulation { points, triangles, face } = cut;
-        let mut surface = Self {
-            triangles: source.par_iter().map(|&t| triangles[t as usize]).collect(),
-            face: source.par_iter().map(|&t| face[t as usize]).collect(),
-            source,
-            area: 0.0,
-            normals: Vec::new(),
-            diagonal,
-            points,
-            tree,
-            creases: Vec::new(),
-            borders: Vec::new(),
-        };
-        surface.measure_areas();
-        surface
+    /// Finds the area of the triangles as they are.
+    fn measure_area(&mut self) {
+        let numbers = (0..self.source.len() as u32).into_par_iter();
+        let areas: Vec<f64> = numbers.map(|t| self.area_vector(t).norm()).collect();
+        self.area = areas.iter().sum();
     }
 
     /// Points of the surface: those of the mesh, then the centres of its larger polygons.
     #[must_use]
     pub fn points(&self) -> &[Point] {
-        &self.points
+        self.tree.points()
     }
 
     /// Triangles with an area, in the order of this surface.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
-        &self.triangles
+        self.tree.triangles()
     }
 
     /// The face of the original mesh that each triangle is a part of.
@@ -150,16 +142,18 @@ impl Reference {
         &self.face
     }
 
-    /// Unit normal of each triangle.
-    #[must_use]
-    pub fn normals(&self) -> &[Vector] {
-        &self.normals
-    }
-
     /// Unit normal of triangle `t`.
     #[must_use]
-    pub fn normal(&self, t: u32) -> &Vector {
-        &self.normals[t as usize]
+    pub fn normal(&self, t: u32) -> Vector {
+        self.normals.get(t as usize).copied().unwrap_or_else(|| {
+            let along = self.area_vector(t);
+            along / along.norm()
+        })
+    }
+
+    /// Normal of triangle `t` that is as long as its area.
+    fn area_vector(&self, t: u32) -> Vector {
+        area_vector(&self.tree.corners(t))
     }
 
     /// Bounding-box diagonal of the used vertices, in the units of the file.
@@ -228,7 +222,7 @@ impl Reference {
     /// Whether a point is at most `tolerance` away from triangle `t`; false if there is none such.
     #[must_use]
     pub fn is_on(&self, query: &Point, t: u32, tolerance: f64) -> bool {
-        (t as usize) < self.triangles.len() && self.tree.at(t, query).0 <= tolerance * tolerance
+        (t as usize) < self.triangles().len() && self.tree.at(t, query).0 <= tolerance * tolerance
     }
 
     /// The closest points of many queries, in their order; neighbours should be near each other.
@@ -297,38 +291,35 @@ impl Reference {
     /// O(triangles).
     #[must_use]
     pub fn used_points(&self) -> Vec<Point> {
-        let mut seen = FixedBitSet::with_capacity(self.points.len());
-        let corners = self.triangles.iter().flatten();
+        let mut seen = FixedBitSet::with_capacity(self.points().len());
+        let corners = self.triangles().iter().flatten();
         let first = corners.filter(|&&v| !seen.put(v as usize));
-        first.map(|&v| self.points[v as usize]).collect()
+        first.map(|&v| self.points()[v as usize]).collect()
     }
 
     /// About evenly spread points of the surface, `count` of them, always the same.
     #[must_use]
     pub fn samples(&self, count: usize) -> Vec<Point> {
-        sample_triangles(&self.points, &self.triangles, count)
+        sample_triangles(self.points(), self.triangles(), count)
     }
 
     /// The same points, each with the triangle that it is on.
     #[must_use]
     pub fn sample_places(&self, count: usize) -> Vec<(u32, Point)> {
-        sample_places(&self.points, &self.triangles, count)
+        sample_places(self.points(), self.triangles(), count)
     }
 
     fn start(&self, query: &Point, last: u32) -> Best {
-        let triangle = last.min(self.triangles.len() as u32 - 1);
+        let triangle = last.min(self.triangles().len() as u32 - 1);
         let (squared, point) = self.tree.at(triangle, query);
         Best { squared, triangle, point }
     }
 }
 
-/// The triangles that have an area, ascending.
-fn solid(cut: &Triangulation, mesh: &PolyMesh) -> Vec<u32> {
+/// Says of a triangle of these points of `mesh` whether it has an area.
+fn solid(points: &[Point], mesh: &PolyMesh) -> impl Fn(&[u32; 3]) -> bool + Sync {
     let tiny = mesh.diagonal() * f64::EPSILON;
-    (0..cut.triangles.len() as u32)
-        .into_par_iter()
-        .filter(|&t| area_vector(&cut.corners(t)).norm() > tiny * tiny)
-        .collect()
+    move |t| area_vector(&t.map(|v| points[v as usize])).norm() > tiny * tiny
 }
 
 /// Half the cross product of two sides: the length is the area.

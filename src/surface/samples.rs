@@ -6,6 +6,7 @@
 
 use super::reference::Reference;
 use crate::mesh::Point;
+use rayon::prelude::*;
 
 /// About evenly spread points of some triangles, `count` of them unless the area is zero.
 /// O(triangles + count).
@@ -25,10 +26,11 @@ pub(super) fn sample_places(
         let [a, b, c] = corners(t);
         (b - a).cross(&(c - a)).norm() * 0.5
     };
-    let total: f64 = triangles.iter().map(area).sum();
+    let areas: Vec<f64> = triangles.par_iter().map(area).collect();
+    let total: f64 = areas.iter().sum();
     let (mut out, mut done) = (Vec::with_capacity(count), 0.0);
-    for (number, t) in triangles.iter().enumerate() {
-        done += area(t);
+    for (number, (t, area)) in triangles.iter().zip(areas).enumerate() {
+        done += area;
         // Sample i stands in the middle of its share of the area, (i + 1/2) / count.
         while out.len() < count && (out.len() as f64 + 0.5) * total < done * count as f64 {
             let place = place_in_triangle(out.len(), &corners(t));

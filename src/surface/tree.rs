@@ -74,54 +74,72 @@ impl Node {
 #[derive(Debug, Clone)]
 pub(super) struct Tree {
     nodes: Vec<Node>,
-    triangles: Vec<[Point; 3]>,
+    points: Vec<Point>,
+    /// The corners of each triangle, as numbers of points: the places themselves, side by side,
+    /// would be as large as all the rest.
+    triangles: Vec<[u32; 3]>,
     frame: Frame,
 }
 
 impl Tree {
-    /// Builds the tree over `count` triangles, at least one, with the corners that `corners` gives,
-    /// in O(n log n), parallel; also returns the order in which it stores them, which is spatially
-    /// coherent.
+    /// Builds the tree over `count` triangles, at least one, with the corners that `corners` gives
+    /// as numbers of `points`, in O(n log n), parallel; also returns the order in which it stores
+    /// them, which is spatially coherent.
     pub(super) fn build(
+        points: Vec<Point>,
         count: usize,
-        corners: impl Fn(u32) -> [Point; 3] + Sync,
+        corners: impl Fn(u32) -> [u32; 3] + Sync,
     ) -> (Self, Vec<u32>) {
         let numbers = || (0..count as u32).into_par_iter();
-        let frame = Frame::new(count, &corners);
-        let item =
-            |t: u32| Item { centre: frame.bounds(&corners(t)).doubled_centre(), triangle: t };
+        let place = |t: u32| corners(t).map(|v| points[v as usize]);
+        let frame = Frame::new(count, place);
+        let item = |t: u32| Item { centre: frame.bounds(&place(t)).doubled_centre(), triangle: t };
         let mut items: Vec<Item> = numbers().map(item).collect();
         sort(&mut items);
         let order: Vec<u32> = items.into_iter().map(|item| item.triangle).collect();
         let triangles = order.par_iter().map(|&t| corners(t)).collect();
-        let mut tree = Self { nodes: vec![Node::EMPTY; node_count(count)], triangles, frame };
+        let nodes = vec![Node::EMPTY; node_count(count)];
+        let mut tree = Self { nodes, points, triangles, frame };
         tree.fill();
         (tree, order)
     }
 
     /// Lets the triangles, which keep their order, have other corners. The tree is then as right as
     /// one that is built anew, and as fast as long as neighbours stay neighbours. O(n), parallel.
-    pub(super) fn follow(&mut self, corners: impl Fn(u32) -> [Point; 3] + Sync) {
-        self.frame = Frame::new(self.triangles.len(), &corners);
-        let moved = |(t, triangle): (usize, &mut [Point; 3])| *triangle = corners(t as u32);
-        self.triangles.par_iter_mut().enumerate().for_each(moved);
+    pub(super) fn follow(&mut self, points: Vec<Point>, corners: impl Fn(u32) -> [u32; 3] + Sync) {
+        self.points = points;
+        self.triangles.par_iter_mut().enumerate().for_each(|(t, own)| *own = corners(t as u32));
+        self.frame = Frame::new(self.triangles.len(), |t| self.corners(t));
         self.fill();
     }
 
     /// Fills the nodes from the triangles.
     fn fill(&mut self) {
-        let Self { nodes, triangles, frame } = self;
-        Part { nodes, number: 0, triangles, start: 0 }.fill(frame);
+        let Self { nodes, points, triangles, frame } = self;
+        Part { nodes, number: 0, triangles, start: 0 }.fill(&Scene { frame, points });
+    }
+
+    /// All points.
+    pub(super) fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// The corners of all triangles, as numbers of points.
+    pub(super) fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
     }
 
     /// The corners of triangle `t`.
-    pub(super) fn corners(&self, t: u32) -> &[Point; 3] {
-        &self.triangles[t as usize]
+    // Written out: a closure is not always inlined.
+    #[inline]
+    pub(super) fn corners(&self, t: u32) -> [Point; 3] {
+        let [a, b, c] = self.triangles[t as usize];
+        [self.points[a as usize], self.points[b as usize], self.points[c as usize]]
     }
 
     /// Squared distance and closest point of triangle `t`.
     pub(super) fn at(&self, t: u32, query: &Point) -> (f64, Point) {
-        let on = closest_on_triangle(query, self.corners(t));
+        let on = closest_on_triangle(query, &self.corners(t));
         ((on - query).norm_squared(), on)
     }
 
@@ -362,6 +380,12 @@ fn widest_axis(items: &[Item]) -> usize {
     (1..3).fold(0, |best, k| if extent(k) > extent(best) { k } else { best })
 }
 
+/// What boxes are made from.
+struct Scene<'a> {
+    frame: &'a Frame,
+    points: &'a [Point],
+}
+
 /// A part of the tree whose nodes are to be filled.
 struct Part<'a> {
     /// Its nodes.
@@ -369,14 +393,14 @@ struct Part<'a> {
     /// Number of the first one.
     number: usize,
     /// Its triangles, in order.
-    triangles: &'a [[Point; 3]],
+    triangles: &'a [[u32; 3]],
     /// Number of the first one.
     start: usize,
 }
 
 impl Part<'_> {
     /// Fills the nodes; the bounds of all.
-    fn fill(self, frame: &Frame) -> Bounds {
+    fn fill(self, scene: &Scene) -> Bounds {
         let Part { nodes, number, triangles, start } = self;
         let many = triangles.len() > TOGETHER;
         let halves = triangles.split_at(first_half(triangles.len()));
@@ -402,8 +426,8 @@ impl Part<'_> {
         let [a, b, c, d] = parts;
         let ((a, b), (c, d)) = both(
             many,
-            || both(many, || a.bounds(frame), || b.bounds(frame)),
-            || both(many, || c.bounds(frame), || d.bounds(frame)),
+            || both(many, || a.bounds(scene), || b.bounds(scene)),
+            || both(many, || c.bounds(scene), || d.bounds(scene)),
         );
         let mut whole = Bounds::NONE;
         for (side, bounds) in [a, b, c, d].into_iter().enumerate().filter(|&(k, _)| sizes[k] > 0) {
@@ -414,11 +438,11 @@ impl Part<'_> {
     }
 
     /// The bounds of a part, which is filled if it is more than a triangle.
-    fn bounds(self, frame: &Frame) -> Bounds {
+    fn bounds(self, scene: &Scene) -> Bounds {
         match self.triangles {
             [] => Bounds::NONE,
-            [t] => frame.bounds(t),
-            _ => self.fill(frame),
+            [t] => scene.frame.bounds(&t.map(|v| scene.points[v as usize])),
+            _ => self.fill(scene),
         }
     }
 }

@@ -37,11 +37,6 @@ pub fn triangulate(mesh: &PolyMesh) -> Triangulation {
 }
 
 impl Triangulation {
-    /// Where the corners of triangle `t` are.
-    pub(super) fn corners(&self, t: u32) -> [Point; 3] {
-        self.triangles[t as usize].map(|v| self.points[v as usize])
-    }
-
     fn cut_quad(&mut self, [a, b, c, d]: [u32; 4]) {
         let length = |u: u32, v: u32| (self.points[u as usize] - self.points[v as usize]).norm();
         if length(a, c) <= length(b, d) {
