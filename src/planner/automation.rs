@@ -7,13 +7,14 @@ use super::gate::{GateOptions, Setting, shape_of};
 use super::global::{self, Group, Link};
 use super::lines::{self, Rails};
 use super::schedule::{Schedule, Slack, is_poor};
-use super::worker::{Size, Stage, Task};
+use super::worker::{Size, Stage, Task, t_junctions};
 use crate::mesh::MeshError;
 use crate::moves;
 use crate::smooth::{self, Budget, Orientation, RelaxOptions, SmoothOptions};
 use crate::sqrtcc::{QuadMesh, Vertex, lower};
 use crate::surface::{Reference, SharpLines};
 use crate::watch::Watch;
+use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What the automation works with and towards.
@@ -47,6 +48,8 @@ pub struct Automation<'a> {
 const FAIR: f64 = 2.0;
 /// Share of the Hausdorff distance to keep within which vertices of features slide freely.
 const SLIDES_WITHIN: f64 = 0.3;
+/// Faces whose angles are added by one thread.
+const CHUNK: usize = 4096;
 /// How many times its even share of the slack in distance an element may use up.
 const GREED: f64 = 16.0;
 
@@ -93,6 +96,7 @@ impl Automation<'_> {
                 }
             }
             if i + 1 < self.plan.stages {
+                schedule.rest();
                 self.smooth_between(mesh, watch)?;
             } else {
                 // After all that is greedy: so the global plan never leaves more than that alone.
@@ -102,10 +106,13 @@ impl Automation<'_> {
         }
         let types = [Stage::Types];
         self.last_rounds((mesh, &mut contact), &mut schedule, (&types, left), watch)?;
+        schedule.rest();
         self.release_pins(mesh);
         self.smooth(mesh, self.smooth, watch)?;
         let rest = [Stage::Types, Stage::Poor];
         if self.last_rounds((mesh, &mut contact), &mut schedule, (&rest, left), watch)? {
+            schedule.rest();
+            drop(contact);
             self.smooth(mesh, self.smooth, watch)?;
         }
         Ok(schedule)
@@ -120,16 +127,29 @@ impl Automation<'_> {
         (stages, slack): (&[Stage], impl Fn(&QuadMesh, &Contact) -> Slack),
         watch: &dyn Watch,
     ) -> Result<bool, MeshError> {
-        if watch.cancelled() {
+        // Looking the contact up anew takes longer than all the rest.
+        if watch.cancelled() || !stages.iter().any(|&stage| self.has_seeds(mesh, stage)) {
             return Ok(false);
         }
         let before = schedule.edits.len();
+        // Copies are soon made again; together with the tree of the mesh they are the most there is.
+        schedule.rest();
         contact.attach(mesh, self.reference)?;
         schedule.restart(Slack { angles: f64::INFINITY, ..slack(mesh, contact) });
         for &stage in stages {
             self.rounds((mesh, contact), schedule, (stage, self.plan.lambda_types), watch);
         }
         Ok(schedule.edits.len() > before)
+    }
+
+    /// Whether there is anything to do in a stage of the kinds that come last.
+    fn has_seeds(&self, mesh: &QuadMesh, stage: Stage) -> bool {
+        let faces: Vec<Vertex> = faces(mesh).collect();
+        let is_seed = |&f: &Vertex| match stage {
+            Stage::Types => t_junctions(mesh, &[f]) > 0,
+            _ => is_poor(mesh, f, self.gate.min_jacobian),
+        };
+        faces.par_iter().any(is_seed)
     }
 
     /// Most faces of a patch in stage `i`: no patch is most of the mesh.
@@ -177,24 +197,23 @@ impl Automation<'_> {
         let mut tried = BTreeSet::new();
         for _ in 0..rounds {
             if watch.cancelled() {
-                return;
+                break;
             }
             let groups = match stage {
                 Stage::Groups { .. } => groups(mesh, &mut tried),
                 _ => BTreeMap::new(),
             };
-            let groups = &groups;
             let task = Task {
                 stage,
                 lambda,
-                groups,
+                groups: &groups,
                 plan: self.plan,
                 costs: self.costs,
                 gate,
                 lines: self.lines,
             };
             if !schedule.round((mesh, contact), &task, watch) {
-                return;
+                break;
             }
         }
     }
@@ -206,10 +225,11 @@ impl Automation<'_> {
 
     /// Smooths before more edits; a run that is to stop leaves that to the smoothing at its end.
     fn smooth_between(&self, mesh: &mut QuadMesh, watch: &dyn Watch) -> Result<(), MeshError> {
-        if watch.cancelled() {
+        let iterations = self.plan.smooth_between;
+        // Without stages the faces are fitted to the reference at least.
+        if watch.cancelled() || iterations == 0 && self.plan.stages > 0 {
             return Ok(());
         }
-        let iterations = self.plan.smooth_between;
         let options = SmoothOptions { iterations, hurried: 0, ..self.smooth.clone() };
         self.smooth(mesh, &options, watch)
     }
@@ -252,9 +272,12 @@ fn corners(mesh: &QuadMesh) -> f64 {
     faces(mesh).map(|f| f64::from(mesh.valence(f))).sum()
 }
 
-/// Σ |angle − ideal| over all corners, degrees.
+/// Σ |angle − ideal| over all corners, degrees. Parallel.
 fn angles(mesh: &QuadMesh) -> f64 {
-    shape_of(mesh, faces(mesh)).angles()
+    let all: Vec<Vertex> = faces(mesh).collect();
+    let chunks = all.par_chunks(CHUNK).map(|part| shape_of(mesh, part.iter().copied()).angles());
+    // Added in order: the sum does not depend on threads.
+    chunks.collect::<Vec<f64>>().into_iter().sum()
 }
 
 /// The global plan for the mesh as it is, of what has not been tried; by first member.

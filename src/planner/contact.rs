@@ -9,6 +9,8 @@ use super::cover::Cover;
 use crate::mesh::{MeshError, NONE, Point};
 use crate::sqrtcc::{Lowered, QuadMesh, Vertex, lower};
 use crate::surface::Reference;
+use rayon::prelude::*;
+use rustc_hash::FxHashSet;
 
 /// Probes for each face of the mesh, beside those on creases.
 const PROBES_PER_FACE: usize = 3;
@@ -26,8 +28,16 @@ pub struct Contact {
     /// First probe of each face, by vertex id, and the probe after each probe.
     first: Vec<u32>,
     next: Vec<u32>,
-    /// The faces that probes are handed to.
-    cover: Cover,
+    /// What edits have taken from their faces, and all those faces.
+    loose: Vec<Loose>,
+    waiting: FxHashSet<Vertex>,
+}
+
+/// Probes that are to be handed to the nearest of some faces.
+#[derive(Debug, Clone)]
+struct Loose {
+    faces: Vec<Vertex>,
+    probes: Vec<u32>,
 }
 
 impl Contact {
@@ -128,39 +138,115 @@ impl Contact {
         chain.map(|i| (self.points[i as usize], self.distance[i as usize]))
     }
 
-    /// Hands the probes of faces that have changed or moved to the nearest of those there now.
-    /// `changed` are the vertices that an edit has changed or moved.
+    /// Makes ready for an edit that changes or moves these vertices: probes that are still to be
+    /// handed to faces there are, as they are now.
+    pub fn expect(&mut self, mesh: &QuadMesh, vertices: impl Iterator<Item = Vertex>) {
+        let known: Vec<Vertex> = vertices.filter(|&v| v < mesh.vertex_ids()).collect();
+        if faces_at(mesh, &known).iter().any(|f| self.waiting.contains(f)) {
+            self.settle(mesh);
+        }
+    }
+
+    /// Takes the probes of faces that an edit has changed or moved, to be handed to the nearest of
+    /// those there now: by [`Self::settle`], but as if it were at once. `changed` are the vertices
+    /// that the edit has changed or moved.
     pub fn reassign(&mut self, mesh: &QuadMesh, changed: &[Vertex]) {
         self.first.resize(mesh.vertex_ids() as usize, NONE);
-        let is_alive = |&&v: &&Vertex| mesh.is_alive(v) && !mesh.is_ghost(v);
-        let moved = changed.iter().filter(is_alive).filter(|&&v| !mesh.is_face(v));
-        let mut faces: Vec<Vertex> = moved.flat_map(|&v| mesh.neighbours(v)).collect();
-        faces.extend(changed.iter().filter(|&&v| mesh.is_face(v)));
-        faces.sort_unstable();
-        faces.dedup();
+        let mut faces = faces_at(mesh, changed);
+        debug_assert!(!faces.iter().any(|f| self.waiting.contains(f)), "the edit was expected");
+        let probes = self.take(&faces);
+        faces.retain(|&f| mesh.is_alive(f) && !mesh.is_ghost(f));
+        self.waiting.extend(&faces);
+        self.loose.push(Loose { faces, probes });
+    }
+
+    /// Hands out what [`Self::reassign`] has taken. Parallel.
+    pub fn settle(&mut self, mesh: &QuadMesh) {
+        let loose = std::mem::take(&mut self.loose);
+        self.waiting.clear();
+        let points = &self.points;
+        let covered = |cover: &mut Cover, Loose { faces, probes }: Loose| {
+            let corners = |&f: &Vertex| mesh.neighbours(f).map(|v| mesh.position(v));
+            cover.fill(faces.iter().map(corners));
+            let nearest = |probe: u32| {
+                let (squared, i) = cover.nearest(&points[probe as usize], f64::INFINITY)?;
+                Some((probe, faces[i], squared.sqrt()))
+            };
+            probes.into_iter().filter_map(nearest).collect::<Vec<_>>()
+        };
+        let handed: Vec<_> = loose.into_par_iter().map_init(Cover::default, covered).collect();
+        for (probe, face, distance) in handed.into_iter().flatten() {
+            self.put(probe, face, distance);
+        }
+    }
+
+    /// Takes all probes from some faces.
+    fn take(&mut self, faces: &[Vertex]) -> Vec<u32> {
         let mut loose = Vec::new();
-        for &f in &faces {
+        for &f in faces {
             let mut probe = std::mem::replace(&mut self.first[f as usize], NONE);
             while probe != NONE {
                 loose.push(probe);
                 probe = self.next[probe as usize];
             }
         }
-        faces.retain(|&f| mesh.is_alive(f) && !mesh.is_ghost(f));
-        let corners = |&f: &Vertex| mesh.neighbours(f).map(|v| mesh.position(v));
-        self.cover.fill(faces.iter().map(corners));
-        for probe in loose {
-            if let Some((squared, i)) =
-                self.cover.nearest(&self.points[probe as usize], f64::INFINITY)
-            {
-                self.put(probe, faces[i], squared.sqrt());
-            }
-        }
+        loose
     }
 
     fn put(&mut self, probe: u32, face: Vertex, distance: f64) {
         self.distance[probe as usize] = distance;
         self.next[probe as usize] = self.first[face as usize];
         self.first[face as usize] = probe;
+    }
+}
+
+/// The faces among vertices that have changed or moved, dead ones too, and those at the others.
+fn faces_at(mesh: &QuadMesh, changed: &[Vertex]) -> Vec<Vertex> {
+    let is_alive = |&&v: &&Vertex| mesh.is_alive(v) && !mesh.is_ghost(v);
+    let moved = changed.iter().filter(is_alive).filter(|&&v| !mesh.is_face(v));
+    let mut faces: Vec<Vertex> = moved.flat_map(|&v| mesh.neighbours(v)).collect();
+    faces.extend(changed.iter().filter(|&&v| mesh.is_face(v)));
+    faces.sort_unstable();
+    faces.dedup();
+    faces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{Vector, shapes};
+    use crate::sqrtcc::lift;
+    use fixedbitset::FixedBitSet;
+
+    /// Moves vertices one after the other; where the probes are then. They are handed out after each
+    /// move, or when they have to be.
+    fn moved(vertices: &[Vertex], at_once: bool) -> Vec<Vec<(Point, f64)>> {
+        let ball = shapes::sphere(8);
+        let reference = Reference::new(&shapes::sphere(24)).unwrap();
+        let mut mesh = lift(&ball, &FixedBitSet::new()).unwrap();
+        let mut contact = Contact::new(&reference, ball.face_count());
+        contact.attach(&mesh, &reference).unwrap();
+        for &v in vertices {
+            contact.expect(&mesh, std::iter::once(v));
+            mesh.set_position(v, mesh.position(v) + Vector::new(0.02, -0.03, 0.01));
+            contact.reassign(&mesh, &[v]);
+            if at_once {
+                contact.settle(&mesh);
+            }
+        }
+        contact.settle(&mesh);
+        (0..mesh.vertex_ids()).map(|f| contact.probes(f).collect()).collect()
+    }
+
+    #[test]
+    fn probes_that_wait_are_handed_out_as_if_at_once() {
+        let ball = lift(&shapes::sphere(8), &FixedBitSet::new()).unwrap();
+        let all: Vec<Vertex> = ball.vertices().filter(|&v| !ball.is_face(v)).collect();
+        // Far from one another at first, then all that there are, side by side.
+        let order: Vec<Vertex> = all.iter().step_by(40).chain(&all).copied().collect();
+        let (later, at_once) = (moved(&order, false), moved(&order, true));
+        assert!(later == at_once);
+        let probes: usize = later.iter().map(Vec::len).sum();
+        assert!(probes >= 3 * ball.vertices().filter(|&v| ball.is_face(v)).count());
     }
 }

@@ -66,7 +66,7 @@ knobs! {
         fillings: u32 = 3, in 1.0..=20.0, "count";
         /// Largest |ln| of the number of faces over that of the input.
         size_drift: f64 = 0.08, in 0.0..=3.0, "ln";
-        /// Iterations of smoothing before the first stage and after each.
+        /// Iterations of smoothing before the first stage and after each; 0 smooths at the end only.
         smooth_between: u32 = 40, in 0.0..=5000.0, "count";
         /// Sweeps over the vertices within features, which slide along them, after each smoothing.
         slides: u32 = 5, in 0.0..=1000.0, "count";

@@ -78,7 +78,7 @@ pub struct Slack {
 #[derive(Debug)]
 pub struct Schedule {
     workers: Vec<Mutex<Worker>>,
-    /// What each round since the last restart has written.
+    /// What each round since the last rest has written.
     changes: Vec<Changes>,
     /// The round in which the connectivity around a vertex last changed.
     changed: Vec<u32>,
@@ -103,7 +103,7 @@ impl Schedule {
     /// called in.
     #[must_use]
     pub fn new(size: Size) -> Self {
-        let workers = (0..=rayon::current_num_threads()).map(|_| Mutex::default()).collect();
+        let workers = (0..rayon::current_num_threads()).map(|_| Mutex::default()).collect();
         Self {
             workers,
             changes: Vec::new(),
@@ -123,12 +123,18 @@ impl Schedule {
     /// Lets every element be tried again: the rules have changed, or the mesh has. From now on
     /// edits may use up `slack`.
     pub fn restart(&mut self, slack: Slack) {
-        self.changes.clear();
-        for worker in &mut self.workers {
-            worker.get_mut().unwrap_or_else(PoisonError::into_inner).forget();
-        }
         self.failed.clear();
         self.slack = slack;
+    }
+
+    /// Gives back the memory of planning, which takes several times that of the mesh; after that
+    /// anything may write to it.
+    pub fn rest(&mut self) {
+        self.changes.clear();
+        self.failed.clear();
+        for worker in &mut self.workers {
+            *worker.get_mut().unwrap_or_else(PoisonError::into_inner) = Worker::default();
+        }
     }
 
     /// What edits may still use up.
@@ -139,7 +145,7 @@ impl Schedule {
 
     /// One round; whether there was something left to try.
     ///
-    /// *Precondition:* nothing but rounds has written to the mesh since [`Self::restart`].
+    /// *Precondition:* nothing but rounds has written to the mesh since [`Self::rest`].
     pub fn round(
         &mut self,
         (mesh, contact): (&mut QuadMesh, &mut Contact),
@@ -195,8 +201,7 @@ impl Schedule {
             let is_poor = |&f: &Vertex| is_poor(mesh, f, task.gate.options.min_jacobian);
             return mesh.vertices().filter(fresh).filter(is_poor).collect();
         }
-        let irregular = mesh.vertices().filter(|&v| mesh.irregularity(v) > 0);
-        let fresh: Vec<Vertex> = irregular.filter(fresh).collect();
+        let fresh: Vec<Vertex> = mesh.irregular().into_iter().filter(fresh).collect();
         self.spacing.start(mesh);
         fresh.into_iter().filter(|&v| self.spacing.take(mesh, v, task.plan.spacing)).collect()
     }
@@ -219,6 +224,10 @@ impl Schedule {
         let turned_down = &Mutex::default();
         let context =
             Context { task, contact, size: self.size, hopeless: &self.hopeless, turned_down };
+        // Not by the workers: what a thread gives back, glibc keeps for that thread.
+        for worker in &self.workers {
+            lock(worker).sync(mesh, &self.changes);
+        }
         let done = std::sync::atomic::AtomicUsize::new(0);
         let left = mesh.total_irregularity() as usize;
         seeds
@@ -228,9 +237,8 @@ impl Schedule {
                 if watch.cancelled() {
                     return Outcome::of(seed);
                 }
-                let index = rayon::current_thread_index().map_or(0, |i| i + 1);
+                let index = rayon::current_thread_index().unwrap_or(0);
                 let mut worker = lock(&self.workers[index % self.workers.len()]);
-                worker.sync(mesh, &self.changes);
                 let outcome = worker.propose(seed, context);
                 drop(worker);
                 let count = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
@@ -264,6 +272,8 @@ impl Schedule {
                 self.fail(proposal.seed, task, scope, 0.0);
                 continue;
             }
+            let moved = proposal.moved.iter().map(|m| m.0);
+            contact.expect(mesh, proposal.touched.iter().copied().chain(moved));
             let (first_new, mark) = (mesh.vertex_ids(), mesh.mark());
             let ids = (mesh.vertex_ids(), mesh.quad_ids());
             proposal.edit = proposal.edit.rebased(planned, ids);
@@ -285,6 +295,7 @@ impl Schedule {
             self.record(proposal, gain, planned.0);
             made += 1;
         }
+        contact.settle(mesh);
         self.changes.push(mesh.changes());
         mesh.commit();
         made
@@ -398,7 +409,7 @@ impl Spacing {
 fn lock(worker: &Mutex<Worker>) -> MutexGuard<'_, Worker> {
     worker.lock().unwrap_or_else(|poisoned| {
         let mut worker = poisoned.into_inner();
-        worker.forget();
+        *worker = Worker::default();
         worker
     })
 }

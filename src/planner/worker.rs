@@ -63,7 +63,7 @@ impl Proposal {
 
 /// Pairs of a face with five corners or more, among `vertices`, and an interior vertex of three
 /// edges at it, whether either is irregular in its place or not.
-fn t_junctions(mesh: &QuadMesh, vertices: &[Vertex]) -> usize {
+pub(super) fn t_junctions(mesh: &QuadMesh, vertices: &[Vertex]) -> usize {
     let exists = |&&v: &&Vertex| v < mesh.vertex_ids() && mesh.is_alive(v);
     let large = |&&f: &&Vertex| mesh.is_face(f) && !mesh.is_ghost(f) && mesh.valence(f) > 4;
     let hanging =
@@ -241,11 +241,6 @@ impl Worker {
         self.taken = Some(changes.len());
     }
 
-    /// Lets the mesh be taken over as a whole next time.
-    pub fn forget(&mut self) {
-        (self.mesh, self.taken) = (QuadMesh::default(), None);
-    }
-
     /// The best edit that begins with `seed`.
     pub fn propose(&mut self, seed: Vertex, context: Context) -> Outcome {
         let mut outcome = Outcome::of(seed);
@@ -266,6 +261,8 @@ impl Worker {
         }
         outcome.scope.sort_unstable();
         outcome.scope.dedup();
+        // Those of all seeds are kept, and most of it was said more than once.
+        outcome.scope.shrink_to_fit();
         outcome
     }
 

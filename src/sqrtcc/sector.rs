@@ -6,6 +6,7 @@
 
 use super::{HalfEdge, QuadMesh, Vertex};
 use crate::mesh::NONE;
+use rayon::prelude::*;
 
 impl QuadMesh {
     /// How many faces (or edges, for a d-vertex) there are too many around `origin(h)` in the
@@ -58,7 +59,15 @@ impl QuadMesh {
     /// Σ irregularity over all vertices and faces: E of the plan.
     #[must_use]
     pub fn total_irregularity(&self) -> u64 {
-        self.vertices().map(|v| u64::from(self.irregularity(v))).sum()
+        self.irregular().into_iter().map(|v| u64::from(self.irregularity(v))).sum()
+    }
+
+    /// The vertices with an irregularity, in order of id. O(size of Q), parallel.
+    #[must_use]
+    pub fn irregular(&self) -> Vec<Vertex> {
+        let is_there = |&v: &Vertex| self.is_alive(v) && !self.is_ghost(v);
+        let all = (0..self.vertex_ids()).into_par_iter();
+        all.filter(|v| is_there(v) && self.irregularity(*v) > 0).collect()
     }
 
     /// Where the ideal of the sector that begins with `first` is kept: at the frozen quad on its
