@@ -87,9 +87,11 @@ impl Clean {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
         self.check_paths()?;
         let destination = self.format.to(&self.output)?;
-        let begun = self.source.begin(self.patience.begin()?)?;
+        let mut begun = self.source.begin(self.patience.begin()?)?;
+        let shows = self.pictures.is_some() || self.report.is_some();
+        let mesh = if shows { begun.input.mesh.clone() } else { begun.take_mesh() };
         let Begun { progress, config, input, policy, .. } = &begun;
-        let cleaned = clean(input.mesh.clone(), begun.surface(), *policy, config, progress)
+        let cleaned = clean(mesh, begun.surface(), *policy, config, progress)
             .map_err(|e| self.source.failure(e))?;
         progress.progress(Phase::Write, 0, 1, None);
         destination.write(&cleaned.mesh)?;
@@ -99,7 +101,7 @@ impl Clean {
         if let Some(path) = &self.log {
             output::file(path, &output::log(&cleaned.report.edits, &cleaned.mesh)?)?;
         }
-        if self.pictures.is_some() || self.report.is_some() {
+        if shows {
             let shown = Aftermath::new((input, begun.reference.as_ref()), &cleaned, config);
             self.show(&shown, progress.timings())?;
         }

@@ -105,8 +105,8 @@ impl Convert {
         self.source.check_paths(None, Some(&self.output), json.as_slice())
     }
 
-    fn pure_quad(&self, begun: Begun, destination: Destination) -> Result<Exit, Failure> {
-        let (mesh, surface) = (begun.input.mesh.clone(), begun.surface());
+    fn pure_quad(&self, mut begun: Begun, destination: Destination) -> Result<Exit, Failure> {
+        let (mesh, surface) = (begun.take_mesh(), begun.surface());
         let converted = pure_quad(mesh, surface, begun.policy, &begun.config, &begun.progress)
             .map_err(|e| self.source.failure(e))?;
         begun.progress.progress(Phase::Write, 0, 1, None);

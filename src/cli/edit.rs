@@ -93,9 +93,9 @@ impl Edit {
         self.check_paths()?;
         let output = self.output.as_deref().map(|path| self.format.to(path)).transpose()?;
         let script = self.read_script()?;
-        let begun = self.source.begin(Stop::default())?;
+        let mut begun = self.source.begin(Stop::default())?;
+        let (mesh, surface) = (begun.take_mesh(), begun.surface());
         let options = (&begun.config, self.caution.keep_going);
-        let (mesh, surface) = (begun.input.mesh.clone(), begun.surface());
         let edited = edit(mesh, surface, begun.policy, &script, options, &begun.progress)?;
         if let Some(destination) = output.filter(|_| !self.caution.dry_run) {
             begun.progress.progress(Phase::Write, 0, 1, None);

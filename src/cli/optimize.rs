@@ -64,12 +64,12 @@ impl Optimize {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
         self.check_paths()?;
         let destination = self.format.to(&self.output)?;
-        let begun = self.source.begin(self.patience.begin()?)?;
+        let mut begun = self.source.begin(self.patience.begin()?)?;
         let goal = match self.goal {
             Goal::Planar => optimize::Goal::Planar,
             Goal::Angles => optimize::Goal::Angles,
         };
-        let (mesh, surface) = (begun.input.mesh.clone(), begun.surface());
+        let (mesh, surface) = (begun.take_mesh(), begun.surface());
         let done = optimize(mesh, surface, goal, begun.policy, &begun.config, &begun.progress)
             .map_err(|e| self.source.failure(e))?;
         begun.progress.progress(Phase::Write, 0, 1, None);

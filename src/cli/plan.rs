@@ -49,15 +49,10 @@ pub(super) struct Plan {
 impl Plan {
     pub(super) fn run(&self) -> Result<Exit, Failure> {
         self.check_paths()?;
-        let begun = self.source.begin(self.patience.begin()?)?;
-        let planned = plan(
-            begun.input.mesh.clone(),
-            begun.surface(),
-            begun.policy,
-            &begun.config,
-            &begun.progress,
-        )
-        .map_err(|e| self.source.failure(e))?;
+        let mut begun = self.source.begin(self.patience.begin()?)?;
+        let (mesh, surface) = (begun.take_mesh(), begun.surface());
+        let planned = plan(mesh, surface, begun.policy, &begun.config, &begun.progress)
+            .map_err(|e| self.source.failure(e))?;
         begun.progress.finish();
         let edits = &planned.edits;
         if let Some(path) = &self.output {

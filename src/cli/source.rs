@@ -51,6 +51,11 @@ pub(super) struct Begun {
 }
 
 impl Begun {
+    /// The mesh, which is not kept: a large one is a large part of what there is room for.
+    pub(super) fn take_mesh(&mut self) -> PolyMesh {
+        std::mem::take(&mut self.input.mesh)
+    }
+
     /// The surface to stay on, if it is not the input.
     pub(super) fn surface(&self) -> Option<&PolyMesh> {
         self.reference.as_ref().map(|loaded| &loaded.mesh)

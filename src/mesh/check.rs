@@ -3,6 +3,7 @@
 //! [`check`] names the first flaw. `mend` removes every flaw it can; the pipeline checks what it
 //! is about to write.
 
+use rayon::prelude::*;
 use thiserror::Error;
 
 use super::{PolyMesh, Topology};
@@ -140,7 +141,7 @@ pub(super) fn duplicates(mesh: &PolyMesh) -> Vec<(u32, u32)> {
         (lo, hi, face.len() as u32, f)
     };
     let mut order: Vec<_> = (0..mesh.face_count() as u32).map(key).collect();
-    order.sort_unstable();
+    order.par_sort_unstable();
     let mut pairs = Vec::new();
     for alike in order.chunk_by(|a, b| (a.0, a.1, a.2) == (b.0, b.1, b.2)) {
         if alike.len() > 1 {

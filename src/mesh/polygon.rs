@@ -51,6 +51,19 @@ pub struct PolyMesh {
     group_names: Vec<String>,
 }
 
+impl Default for PolyMesh {
+    /// Nothing.
+    fn default() -> Self {
+        Self {
+            points: Vec::new(),
+            offsets: vec![0],
+            corners: Vec::new(),
+            groups: Vec::new(),
+            group_names: vec![String::new()],
+        }
+    }
+}
+
 impl PolyMesh {
     /// Builds a mesh from points and the corners of each face. O(points + corners).
     pub fn new<F: AsRef<[u32]>>(

@@ -6,11 +6,12 @@
 //! vertex of its own. On a manifold mesh fans and vertices are the same.
 
 use super::PolyMesh;
+use rayon::prelude::*;
 
 /// "No such element" in arrays of ids.
 pub const NONE: u32 = u32::MAX;
 
-/// Half-edge connectivity of a [`PolyMesh`]. Built in O(n log n) for n corners.
+/// Half-edge connectivity of a [`PolyMesh`]. Built in O(n log n) for n corners, in part in parallel.
 #[derive(Debug, Clone)]
 pub struct Topology {
     /// Partner of each half-edge, or [`NONE`] on a boundary or a cut.
@@ -49,8 +50,9 @@ impl Topology {
             let (a, b) = (corners[h as usize], corners[next[h as usize] as usize]);
             (a.min(b), a.max(b), h)
         };
-        let mut order: Vec<(u32, u32, u32)> = (0..corners.len() as u32).map(key).collect();
-        order.sort_unstable();
+        let numbers = (0..corners.len() as u32).into_par_iter();
+        let mut order: Vec<(u32, u32, u32)> = numbers.map(key).collect();
+        order.par_sort_unstable();
 
         let n = corners.len();
         let mut twin = vec![NONE; n];

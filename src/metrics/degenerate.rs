@@ -3,6 +3,7 @@
 
 use super::components::partner_pairs;
 use crate::mesh::{PolyMesh, Topology};
+use rayon::prelude::*;
 use serde::Serialize;
 
 /// Counts of degenerate elements.
@@ -33,7 +34,7 @@ impl Degenerate {
         let faces = 0..mesh.face_count() as u32;
         let repeats = |f: &u32| row(*f).windows(2).any(|w| w[0] == w[1]);
         let mut order: Vec<u32> = faces.clone().collect();
-        order.sort_unstable_by(|&a, &b| row(a).cmp(row(b)));
+        order.par_sort_unstable_by(|&a, &b| row(a).cmp(row(b)));
         let (glued, twice) = shared_edges(topology);
         Self {
             faces_repeated_vertex: faces.filter(repeats).count(),
@@ -75,7 +76,7 @@ fn shared_edges(topology: &Topology) -> (usize, usize) {
         (f.min(g), f.max(g))
     };
     let mut pairs: Vec<(u32, u32)> = partner_pairs(topology).map(pair).collect();
-    pairs.sort_unstable();
+    pairs.par_sort_unstable();
     let glued = pairs.iter().filter(|(f, g)| f == g).count();
     pairs.retain(|(f, g)| f != g);
     (glued, pairs.chunk_by(|a, b| a == b).filter(|same| same.len() > 1).count())

@@ -188,9 +188,10 @@ pub fn measure(mesh: &PolyMesh, target: Option<&Target>) -> Result<Metrics, Metr
     }
     let topology = Topology::new(mesh);
     let shape = Shape::new(mesh, &topology);
-    let counts = TopologyMetrics::new(mesh, &topology);
-    let quality = Quality::new(&shape);
-    let reference = target.map(|t| ReferenceMetrics::new(&shape, t)).transpose()?;
+    let own = || (TopologyMetrics::new(mesh, &topology), Quality::new(&shape));
+    let distances = || target.map(|t| ReferenceMetrics::new(&shape, t)).transpose();
+    let ((counts, quality), reference) = rayon::join(own, distances);
+    let reference = reference?;
     let summary = Summary::new(&counts, &quality, reference.as_ref());
     Ok(Metrics { topology: counts, quality, reference, summary })
 }
