@@ -50,3 +50,22 @@ fn random_meshes_become_cleaner_and_keep_every_invariant() {
     assert!(faults.is_empty(), "{} faults", faults.len());
     assert!(3 * e(1) <= 2 * e(0), "a third of all irregular elements goes at least");
 }
+
+#[test]
+fn the_preset_for_large_meshes_keeps_every_invariant_for_any_number_of_threads() {
+    let messy = Messy::scanned(1, 5000);
+    assert!(messy.mesh == Messy::scanned(1, 5000).mesh, "a seed is a mesh");
+    let config = Config::preset("fast").expect("a preset");
+    let outcome = run(&messy, &config);
+    assert!(outcome.faults.is_empty(), "{:?}", outcome.faults);
+    let [before, after] = outcome.e;
+    say(&format!("{}: E {before} -> {after}", messy.name));
+    assert!(before > 100 && 2 * after <= before, "E {before} -> {after}");
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        let (mesh, reference) = (messy.mesh.clone(), messy.reference.as_ref());
+        let clean = || pipeline::clean(mesh, reference, MendPolicy::Mend, &config, &Silent);
+        pool.install(clean).expect("it was cleaned before").mesh
+    };
+    assert!(with(1) == with(3), "threads make no difference");
+}

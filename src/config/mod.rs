@@ -30,6 +30,7 @@ pub const PRESETS: &[(&str, &str)] = &[
     ("default", include_str!("../../configs/default.toml")),
     ("balanced", include_str!("../../configs/balanced.toml")),
     ("clean", include_str!("../../configs/clean.toml")),
+    ("fast", include_str!("../../configs/fast.toml")),
     ("gentle", include_str!("../../configs/gentle.toml")),
     ("pure-quad", include_str!("../../configs/pure-quad.toml")),
     ("t-junctions", include_str!("../../configs/t-junctions.toml")),
