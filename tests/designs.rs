@@ -222,7 +222,7 @@ fn figure_10_t_junctions_are_moved_merged_and_the_last_pair_changes_its_type() {
 fn bend(q: &QuadMesh, v: Vertex, reference: &Reference) -> f64 {
     let normal = |v: Vertex| reference.normal(reference.closest(&q.location(v)).triangle);
     let here = normal(v);
-    q.neighbours(v).chain(q.diagonals(v)).map(|w| 1.0 - here.dot(normal(w))).sum()
+    q.neighbours(v).chain(q.diagonals(v)).map(|w| 1.0 - here.dot(&normal(w))).sum()
 }
 
 /// How much the reference bends at the irregular elements, in the mean.
