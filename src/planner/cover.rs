@@ -103,6 +103,14 @@ pub(super) fn middle_of(corners: &[Point]) -> Point {
     Point::from(sum / corners.len().max(1) as f64)
 }
 
+/// Where a polygon is measured against a surface: its middle and those of its edges. Of a long one
+/// that bends over a groove the middle alone may be on the surface.
+pub(super) fn gauges(corners: &[Point]) -> impl Iterator<Item = Point> + '_ {
+    let after = corners.iter().cycle().skip(1);
+    let edges = corners.iter().zip(after).map(|(a, b)| nalgebra::center(a, b));
+    std::iter::once(middle_of(corners)).chain(edges)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

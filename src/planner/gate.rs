@@ -5,7 +5,7 @@
 //! rate λ per irregular element removed, and the surface is within the budget, both ways.
 
 use super::contact::Contact;
-use super::cover::{Cover, fan_distance, middle_of};
+use super::cover::{Cover, fan_distance, gauges};
 use crate::knobs::knobs;
 use crate::mesh::{Point, Vector};
 use crate::smooth::{Orientation, Region as Patch, RelaxOptions, relax_local};
@@ -331,12 +331,12 @@ impl Gate {
         shape
     }
 
-    /// Whether the middle of a face that the edit made or changed is too far from the reference.
+    /// Whether a face that the edit made or changed is too far from the reference somewhere.
     fn leaves_surface(&self, setting: &Setting) -> bool {
         self.changed.iter().any(|&i| {
             let near = self.patch.triangle(self.patch.face(i as usize)[0]);
-            setting.reference.closest_near(&middle_of(&self.points_of(i)), near).distance
-                > setting.distance
+            let distance = |at: Point| setting.reference.closest_near(&at, near).distance;
+            gauges(&self.points_of(i)).any(|at| distance(at) > setting.distance)
         })
     }
 

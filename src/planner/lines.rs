@@ -1,5 +1,6 @@
 //! Feature lines of the mesh: vertices within them slide along the creases of the reference.
 
+use super::cover::gauges;
 use super::gate::shape_of;
 use crate::mesh::Point;
 use crate::ops::within_line;
@@ -106,9 +107,14 @@ impl Rails<'_> {
         true
     }
 
-    /// How far the middle of a face is from the surface at most.
+    /// How far the faces are from the surface at most.
     fn distance(&self, mesh: &QuadMesh, faces: &[Vertex]) -> f64 {
-        let off = |&f: &Vertex| self.reference.closest(&mesh.location(f)).distance;
+        let off = |&f: &Vertex| {
+            let corners: SmallVec<[Point; 8]> =
+                mesh.neighbours(f).map(|v| mesh.position(v)).collect();
+            let away = |at: Point| self.reference.closest(&at).distance;
+            gauges(&corners).map(away).fold(0.0, f64::max)
+        };
         faces.iter().map(off).fold(0.0, f64::max)
     }
 }
