@@ -189,9 +189,13 @@ fn edit(
     // From here on Q is the mesh.
     drop(mesh);
     let lines = SharpLines::new(reference, &config.features, mean_edge);
+    // What extends lines is no crease by itself, and shorter than an edge there is none.
+    let sharp = FeatureOptions { min_chain_edges: 1.0, extend: 1.0, ..config.features.clone() };
+    let creases = SharpLines::new(reference, &sharp, mean_edge);
     let automation = Automation {
         reference,
         lines: &lines,
+        creases: &creases,
         orientation,
         budget,
         faces,

@@ -51,15 +51,16 @@ const MOST_E: [(&str, f64); 17] = [
 
 /// What is not as it should be yet: mesh, quantity, and how far off it may be until it is mended.
 const NOT_YET: [(&str, &str, f64); 2] =
-    [("rockerarm_im20k", CREASES, 0.0015), ("penguin_mlpair", CREASES, 0.001)];
+    [("rockerarm_im20k", FARTHEST_CREASE, 0.005), ("penguin_mlpair", CREASES, 0.0008)];
 
 const CREASES: &str = "mean distance of creases";
+const FARTHEST_CREASE: &str = "largest distance of creases";
 
 const T_JUNCTIONS: &str = "T-junctions";
 const INVERTED: &str = "inverted quads";
 
-/// Share of the T-junctions that may be left.
-const MOST_T_JUNCTIONS: f64 = 0.04;
+/// Share of the T-junctions that may be left; none where there were none.
+const MOST_T_JUNCTIONS: f64 = 0.01;
 /// How much larger mean angle deviation and distances to the reference may get.
 const GROWTH: f64 = 1.1;
 /// How much farther from edges of the mesh the creases of the reference may get: on the mean, and
@@ -122,7 +123,7 @@ fn judge_numbers(before: &Summary, after: &Summary, faults: &mut Faults) {
     let most = MOST_E.iter().find(|(name, _)| *name == faults.name).map_or(1.0, |m| m.1);
     let share = after.irregular_elements as f64 / before.irregular_elements as f64;
     faults.at_most("E relative to the input", share, most);
-    let most = (MOST_T_JUNCTIONS * before.t_junctions as f64).round().max(1.0);
+    let most = (MOST_T_JUNCTIONS * before.t_junctions as f64).floor();
     faults.at_most(T_JUNCTIONS, after.t_junctions as f64, most);
     let [mean, largest] = NOISE_REL;
     for (what, of, noise) in [
@@ -172,7 +173,7 @@ fn judge_features(before: &Metrics, after: &Metrics, faults: &mut Faults) {
     let (Some(old), Some(new)) = (distance(before), distance(after)) else { return };
     let ([mean, largest], [on_mean, at_most]) = (NOISE_REL, CREASE_GROWTH);
     faults.at_most(CREASES, new.mean, on_mean * old.mean + mean);
-    faults.at_most("largest distance of creases", new.max, at_most * old.max + largest);
+    faults.at_most(FARTHEST_CREASE, new.max, at_most * old.max + largest);
 }
 
 /// How many of `old` are not in `new`; both are sorted.
@@ -225,6 +226,21 @@ fn real_meshes_become_clean_and_keep_their_shape() {
         say("SKIPPED: the other meshes (set QUADMEND_ALL=1)");
     }
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
+}
+
+/// The preset that spares no effort resamples features most: it must not take faces over grooves.
+#[test]
+fn the_clean_preset_keeps_the_distance_too() {
+    let Some(folder) = data_folder("cleaning with the preset `clean`") else { return };
+    let config = Config::preset("clean").expect("a preset");
+    let name = "goathead_ml";
+    let cleaned = Input::read(&folder, name).clean(&config);
+    let (before, after) = (&cleaned.report.before, &cleaned.report.after);
+    let mut faults = Faults { name, ..Faults::default() };
+    judge_numbers(&before.summary, &after.summary, &mut faults);
+    judge_connectivity(before, after, &mut faults);
+    judge_features(before, after, &mut faults);
+    assert!(faults.lines.is_empty(), "\n{}", faults.lines.join("\n"));
 }
 
 fn bytes(mesh: &PolyMesh) -> Vec<u8> {

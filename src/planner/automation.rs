@@ -24,6 +24,8 @@ pub struct Automation<'a> {
     pub reference: &'a Reference,
     /// Its sharp features.
     pub lines: &'a SharpLines,
+    /// What of its creases is sharp for at least an edge of the mesh.
+    pub creases: &'a SharpLines,
     /// How the mesh is oriented against it.
     pub orientation: Orientation,
     /// How far the mesh may be from it, in units of the file.
@@ -50,6 +52,8 @@ const FAIR: f64 = 2.0;
 const SLIDES_WITHIN: f64 = 0.3;
 /// Faces whose angles are added by one thread.
 const CHUNK: usize = 4096;
+/// How near to a crease vertices are put onto it in the end, in mean edges.
+const SETTLES_WITHIN: f64 = 0.4;
 /// How many times its even share of the slack in distance an element may use up.
 const GREED: f64 = 16.0;
 
@@ -109,7 +113,15 @@ impl Automation<'_> {
         schedule.rest();
         self.release_pins(mesh);
         self.smooth(mesh, self.smooth, watch)?;
-        let rest = [Stage::Types, Stage::Poor];
+        // After the pins of poor quads have been released: most of those can go back then.
+        if !watch.cancelled() && self.settle(mesh) {
+            self.smooth(mesh, self.smooth, watch)?;
+            if self.release_pins(mesh) {
+                self.smooth(mesh, self.smooth, watch)?;
+            }
+        }
+        // What mends a quad may make a T-junction where nothing else does.
+        let rest = [Stage::Types, Stage::Poor, Stage::Types];
         if self.last_rounds((mesh, &mut contact), &mut schedule, (&rest, left), watch)? {
             schedule.rest();
             drop(contact);
@@ -158,16 +170,29 @@ impl Automation<'_> {
         self.plan.patch_faces(i).min(share as usize)
     }
 
-    /// Lets the pins of quads that are still poor move: a crease is not worth a folded quad.
-    fn release_pins(&self, mesh: &mut QuadMesh) {
+    /// Puts vertices that have ended up near a crease onto it, where they stay; whether there were
+    /// any.
+    fn settle(&self, mesh: &mut QuadMesh) -> bool {
+        let rails = Rails { lines: self.creases, ..self.rails() };
+        rails.settle(mesh, SETTLES_WITHIN * self.mean_edge)
+    }
+
+    fn rails(&self) -> Rails<'_> {
+        let tolerance = SLIDES_WITHIN * self.hausdorff();
+        Rails { reference: self.reference, lines: self.lines, tolerance }
+    }
+
+    /// Lets the pins of quads that are still poor move: a crease is not worth a folded quad. Whether
+    /// there were any.
+    fn release_pins(&self, mesh: &mut QuadMesh) -> bool {
         let is_poor = |&f: &Vertex| is_poor(mesh, f, self.gate.min_jacobian);
-        let poor: Vec<Vertex> = mesh.vertices().filter(is_poor).collect();
-        for f in poor {
-            let pins: Vec<Vertex> = mesh.neighbours(f).filter(|&v| mesh.is_pin(v)).collect();
-            for v in pins {
-                mesh.unpin(v);
-            }
+        let poor = mesh.vertices().filter(is_poor);
+        let pins: Vec<Vertex> =
+            poor.flat_map(|f| mesh.neighbours(f)).filter(|&v| mesh.is_pin(v)).collect();
+        for &v in &pins {
+            mesh.unpin(v);
         }
+        !pins.is_empty()
     }
 
     /// Rounds of one kind until nothing more is found.
@@ -254,9 +279,7 @@ impl Automation<'_> {
         for (&v, point) in polygons.vertex_ids.iter().zip(points) {
             mesh.set_position(v, point);
         }
-        let tolerance = SLIDES_WITHIN * self.hausdorff();
-        let rails = Rails { reference: self.reference, lines: self.lines, tolerance };
-        lines::relax(mesh, rails, self.plan.slides);
+        lines::relax(mesh, self.rails(), self.plan.slides);
         mesh.commit();
         Ok(())
     }

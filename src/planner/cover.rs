@@ -116,6 +116,15 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    #[test]
+    fn a_face_is_measured_at_its_middle_and_its_edges() {
+        let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
+        let corners = corners.map(|[x, y]| Point::new(x, y, 0.0));
+        let wanted = [[1.0, 1.0], [1.0, 0.0], [2.0, 1.0], [1.0, 2.0], [0.0, 1.0]];
+        let wanted: Vec<Point> = wanted.iter().map(|&[x, y]| Point::new(x, y, 0.0)).collect();
+        assert_eq!(gauges(&corners).collect::<Vec<_>>(), wanted);
+    }
+
     proptest! {
         #[test]
         fn the_nearest_is_what_looking_at_all_finds(

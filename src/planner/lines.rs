@@ -15,6 +15,11 @@ const WINDOW: usize = 6;
 const CORNER_DEG: f64 = 40.0;
 /// How far from the chord the crease may be, in lengths of the edge.
 const SAGITTA: f64 = 0.3;
+/// How much corners around may deviate more, on the mean, where a vertex is put onto a crease; the
+/// smoothing that follows takes back a part.
+const SETTLING_DEG: f64 = 8.0;
+/// Quads that were better than that may not get a lower scaled Jacobian than this from it.
+const FAIR_JACOBIAN: f64 = 0.6;
 /// Shares of the way to the next vertex of the line that are tried.
 const STRIDES: [f64; 3] = [0.25, 0.1, 0.03];
 
@@ -57,6 +62,42 @@ pub fn relax(mesh: &mut QuadMesh, rails: Rails, sweeps: u32) {
 }
 
 impl Rails<'_> {
+    /// Puts free vertices that are at most `reach` from a crease onto it and pins them, the nearest
+    /// first, where faces stay about as good; whether there were any. O(vertices · log n).
+    pub fn settle(self, mesh: &mut QuadMesh, reach: f64) -> bool {
+        let free = |&v: &Vertex| !(mesh.is_face(v) || mesh.is_ghost(v) || mesh.is_held(v));
+        let near = |v: Vertex| {
+            let place = self.lines.closest(&mesh.position(v), reach)?;
+            Some(((place - mesh.position(v)).norm(), v, place))
+        };
+        let mut near: Vec<_> = mesh.vertices().filter(free).filter_map(near).collect();
+        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        near.into_iter().filter(|&(_, v, place)| self.settles(mesh, v, place)).count() > 0
+    }
+
+    /// Puts `v` there and pins it, unless that spoils the faces around; whether it did.
+    fn settles(&self, mesh: &mut QuadMesh, v: Vertex, place: Point) -> bool {
+        let faces: SmallVec<[Vertex; 8]> =
+            mesh.neighbours(v).filter(|&f| !mesh.is_ghost(f)).collect();
+        let corners: u32 = faces.iter().map(|&f| mesh.valence(f)).sum();
+        let state =
+            |mesh: &QuadMesh| (shape_of(mesh, faces.iter().copied()), self.distance(mesh, &faces));
+        let (at, (before, near)) = (mesh.position(v), state(mesh));
+        mesh.set_position(v, place);
+        let (after, off) = state(mesh);
+        let allowed = before.angles() + SETTLING_DEG * f64::from(corners);
+        let is_fair = after.angles() <= allowed
+            && after.is_about_as_good_as(&before)
+            && after.jacobian() >= before.jacobian().min(FAIR_JACOBIAN)
+            && off <= near.max(self.tolerance);
+        if is_fair {
+            mesh.pin(v);
+        } else {
+            mesh.set_position(v, at);
+        }
+        is_fair
+    }
+
     /// Slides `v` to the best of a few places; whether it moved.
     fn slide(&self, mesh: &mut QuadMesh, v: Vertex) -> bool {
         let Some(ends) = beside(mesh, v) else { return false };
@@ -174,5 +215,38 @@ impl Line {
         };
         let inner = (1..ends).map(|i| Slide { vertex: after[i], to: at(i).coords.into() });
         inner.collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sqrtcc::lift;
+    use crate::surface::{FeatureOptions, trial};
+    use fixedbitset::FixedBitSet;
+
+    #[test]
+    fn vertices_near_a_crease_settle_on_it() {
+        let mesh = trial::cube(8, 0.0, 0.0);
+        let reference = Reference::new(&mesh).unwrap();
+        let lines = SharpLines::new(&reference, &FeatureOptions::default(), 0.25);
+        let rails = Rails { reference: &reference, lines: &lines, tolerance: 0.01 };
+        let mut q = lift(&mesh, &FixedBitSet::with_capacity(mesh.corner_count())).unwrap();
+        let at = |q: &QuadMesh, place: Point| {
+            let here = |&v: &Vertex| !q.is_face(v) && (q.position(v) - place).norm() < 1e-9;
+            q.vertices().find(here).unwrap()
+        };
+        let middle = Point::new(0.0, 1.0, 1.0);
+        let [near, far] = [middle, Point::new(1.0, 0.0, 1.0)].map(|place| at(&q, place));
+        q.set_position(near, Point::new(0.0, 0.95, 1.0));
+        q.set_position(far, Point::new(1.0, 0.0, 0.85));
+        q.commit();
+        assert!(rails.settle(&mut q, 0.1));
+        assert!((q.position(near) - middle).norm() < 1e-12);
+        assert!(q.is_pin(near));
+        assert_eq!(q.position(far), Point::new(1.0, 0.0, 0.85));
+        assert!(!q.is_pin(far));
+        let inside = at(&q, Point::new(0.0, 0.0, 1.0));
+        assert!(!q.is_pin(inside));
     }
 }

@@ -296,15 +296,22 @@ impl Worker {
         let hangs = |&v: &Vertex| self.mesh.valence(v) == 3;
         let near: Vec<Vertex> =
             std::iter::once(seed).chain(self.mesh.neighbours(seed).filter(hangs)).collect();
-        let resolves = |worker: &mut Self, ops: &[Op]| worker.resolves_t_junction(ops);
+        let resolves = |worker: &mut Self, ops: &[Op]| worker.t_junctions_made(ops) < 0;
         self.propose_best(seed, &near, (resolves, |_| true), context, outcome);
     }
 
-    /// The one or two operations at a poor quad after which there is a better one.
+    /// The one or two operations at a poor quad after which there is a better one; such as make a
+    /// T-junction only if there are no others.
     fn propose_mending(&mut self, seed: Vertex, context: Context, outcome: &mut Outcome) {
         let near: Vec<Vertex> = std::iter::once(seed).chain(self.mesh.neighbours(seed)).collect();
-        let all = |_: &mut Self, _: &[Op]| true;
-        self.propose_best(seed, &near, (all, |p| p.mended > WORTH_MENDING), context, outcome);
+        for most in [0, i32::MAX] {
+            let wanted = |worker: &mut Self, ops: &[Op]| worker.t_junctions_made(ops) <= most;
+            let works = |p: &Proposal| p.mended > WORTH_MENDING;
+            self.propose_best(seed, &near, (wanted, works), context, outcome);
+            if outcome.proposal.is_some() {
+                return;
+            }
+        }
     }
 
     /// The operations that cost the least angle, at the same E or else a little more, of those that
@@ -340,14 +347,15 @@ impl Worker {
         }
     }
 
-    /// Whether the operations leave fewer T-junctions.
-    fn resolves_t_junction(&mut self, ops: &[Op]) -> bool {
+    /// How many T-junctions more there are after the operations.
+    fn t_junctions_made(&mut self, ops: &[Op]) -> i32 {
         let mark = self.mesh.mark();
         let done = ops.iter().try_for_each(|op| op.run(&mut self.mesh).map(drop)).is_ok();
         let around = self.with_neighbours(&self.mesh.touched_since(mark));
         let after = t_junctions(&self.mesh, &around);
         self.mesh.undo_to(mark);
-        done && after < t_junctions(&self.mesh, &around)
+        let made = after as i32 - t_junctions(&self.mesh, &around) as i32;
+        if done { made } else { i32::MAX }
     }
 
     fn reductions(&mut self, seed: Vertex, plan: &PlanOptions) -> Vec<Candidate> {
