@@ -114,18 +114,25 @@ impl Automation<'_> {
         self.release_pins(mesh);
         self.smooth(mesh, self.smooth, watch)?;
         // After the pins of poor quads have been released: most of those can go back then.
-        if !watch.cancelled() && self.settle(mesh) {
+        let mut settled = if watch.cancelled() { Vec::new() } else { self.settle(mesh) };
+        if !settled.is_empty() {
             self.smooth(mesh, self.smooth, watch)?;
             if self.release_pins(mesh) {
                 self.smooth(mesh, self.smooth, watch)?;
             }
+            // Which vertex an operation keeps depends on pins, and a log does not tell these.
+            settled.retain(|&v| mesh.is_pin(v));
+            settled.iter().for_each(|&v| mesh.unpin(v));
         }
         // What mends a quad may make a T-junction where nothing else does.
         let rest = [Stage::Types, Stage::Poor, Stage::Types];
         if self.last_rounds((mesh, &mut contact), &mut schedule, (&rest, left), watch)? {
             schedule.rest();
             drop(contact);
+            settled.retain(|&v| mesh.is_alive(v));
+            settled.iter().for_each(|&v| mesh.pin(v));
             self.smooth(mesh, self.smooth, watch)?;
+            settled.iter().for_each(|&v| mesh.unpin(v));
         }
         Ok(schedule)
     }
@@ -170,9 +177,8 @@ impl Automation<'_> {
         self.plan.patch_faces(i).min(share as usize)
     }
 
-    /// Puts vertices that have ended up near a crease onto it, where they stay; whether there were
-    /// any.
-    fn settle(&self, mesh: &mut QuadMesh) -> bool {
+    /// Puts vertices that have ended up near a crease onto it, and pins them: those.
+    fn settle(&self, mesh: &mut QuadMesh) -> Vec<Vertex> {
         let rails = Rails { lines: self.creases, ..self.rails() };
         rails.settle(mesh, SETTLES_WITHIN * self.mean_edge)
     }

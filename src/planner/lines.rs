@@ -63,8 +63,8 @@ pub fn relax(mesh: &mut QuadMesh, rails: Rails, sweeps: u32) {
 
 impl Rails<'_> {
     /// Puts free vertices that are at most `reach` from a crease onto it and pins them, the nearest
-    /// first, where faces stay about as good; whether there were any. O(vertices · log n).
-    pub fn settle(self, mesh: &mut QuadMesh, reach: f64) -> bool {
+    /// first, where faces stay about as good: those. O(vertices · log n).
+    pub fn settle(self, mesh: &mut QuadMesh, reach: f64) -> Vec<Vertex> {
         let free = |&v: &Vertex| !(mesh.is_face(v) || mesh.is_ghost(v) || mesh.is_held(v));
         let near = |v: Vertex| {
             let place = self.lines.closest(&mesh.position(v), reach)?;
@@ -72,7 +72,8 @@ impl Rails<'_> {
         };
         let mut near: Vec<_> = mesh.vertices().filter(free).filter_map(near).collect();
         near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        near.into_iter().filter(|&(_, v, place)| self.settles(mesh, v, place)).count() > 0
+        near.retain(|&(_, v, place)| self.settles(mesh, v, place));
+        near.into_iter().map(|(_, v, _)| v).collect()
     }
 
     /// Puts `v` there and pins it, unless that spoils the faces around; whether it did.
@@ -241,7 +242,7 @@ mod tests {
         q.set_position(near, Point::new(0.0, 0.95, 1.0));
         q.set_position(far, Point::new(1.0, 0.0, 0.85));
         q.commit();
-        assert!(rails.settle(&mut q, 0.1));
+        assert_eq!(rails.settle(&mut q, 0.1), [near]);
         assert!((q.position(near) - middle).norm() < 1e-12);
         assert!(q.is_pin(near));
         assert_eq!(q.position(far), Point::new(1.0, 0.0, 0.85));
