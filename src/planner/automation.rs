@@ -122,7 +122,9 @@ impl Automation<'_> {
             }
             // Which vertex an operation keeps depends on pins, and a log does not tell these.
             settled.retain(|&v| mesh.is_pin(v));
-            settled.iter().for_each(|&v| mesh.unpin(v));
+            for &v in &settled {
+                mesh.unpin(v);
+            }
         }
         // What mends a quad may make a T-junction where nothing else does.
         let rest = [Stage::Types, Stage::Poor, Stage::Types];
@@ -130,9 +132,13 @@ impl Automation<'_> {
             schedule.rest();
             drop(contact);
             settled.retain(|&v| mesh.is_alive(v));
-            settled.iter().for_each(|&v| mesh.pin(v));
+            for &v in &settled {
+                mesh.pin(v);
+            }
             self.smooth(mesh, self.smooth, watch)?;
-            settled.iter().for_each(|&v| mesh.unpin(v));
+            for &v in &settled {
+                mesh.unpin(v);
+            }
         }
         Ok(schedule)
     }
