@@ -68,13 +68,14 @@ impl Automation<'_> {
         let mut contact = Contact::new(self.reference, faces);
         contact.attach(mesh, self.reference)?;
         let floor = contact.probe_count() as f64 * self.budget.rms.powi(2);
+        // Of the mean at a corner: a mesh of fewer faces may not have worse ones.
         let allowed = Slack {
             distance: self.gate.rms.powi(2) * contact.squared_distances().max(floor),
-            angles: self.gate.angles * angles(mesh).max(FAIR * corners(mesh)),
+            angles: self.gate.angles * (angles(mesh) / corners(mesh)).max(FAIR),
         };
         let left = |mesh: &QuadMesh, contact: &Contact| Slack {
             distance: allowed.distance - contact.squared_distances(),
-            angles: allowed.angles - angles(mesh),
+            angles: allowed.angles * corners(mesh) - angles(mesh),
         };
         self.smooth_between(mesh, watch)?;
         for i in (0..self.plan.stages).take_while(|_| !watch.cancelled()) {

@@ -71,7 +71,8 @@ pub struct Setting<'a> {
 /// An edit that passed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Passed {
-    /// Growth of Σ |angle − ideal| over all corners of the region, degrees.
+    /// Growth of Σ |angle − ideal| over all corners of the region against what as many had in the
+    /// mean before, degrees.
     pub angle_growth: f64,
     /// How well shaped the region is.
     pub shape: Shape,
@@ -130,6 +131,8 @@ impl From<Failure> for Rejected {
 pub struct Shape {
     /// Σ |angle − ideal| over corners, degrees.
     angles: f64,
+    /// Number of corners.
+    corners: usize,
     /// Least scaled Jacobian of the quads, against the reference.
     jacobian: f64,
     /// Quads that are turned over somewhere.
@@ -180,6 +183,8 @@ impl Gate {
         // The patch holds a copy of the edited surroundings: the mesh can go back already.
         mesh.undo_to(mark);
         let before = self.shape_before(mesh, touched, (setting, contact));
+        // Else faces that vanish would be worth their angles, and those that come cost them.
+        let angles_before = before.mean_angle() * self.shape_after().corners as f64;
         let allowed = lambda * f64::from(worth);
         let too_steep = |growth: f64| Rejected {
             failure: Failure::Angles,
@@ -191,7 +196,7 @@ impl Gate {
                 let now = sweeps * part / parts - sweeps * (part - 1) / parts;
                 relax_local(&mut self.patch, setting.reference, setting.relax, now);
             }
-            let growth = self.shape_after().angles - before.angles - share * before.angles;
+            let growth = self.shape_after().angles - (1.0 + share) * angles_before;
             if growth > times * allowed {
                 return Err(too_steep(growth / times));
             }
@@ -210,7 +215,7 @@ impl Gate {
         let moved =
             places.map(|(&v, i)| (v, self.patch.point(i), self.patch.triangle(i))).collect();
         Ok(Passed {
-            angle_growth: after.angles - before.angles,
+            angle_growth: after.angles - angles_before,
             shape: after,
             mended: before.deficit - after.deficit,
             distance_growth: growth,
@@ -331,12 +336,19 @@ impl Gate {
         shape
     }
 
-    /// Whether a face that the edit made or changed is too far from the reference somewhere.
+    /// Whether a face that the edit made or changed is too far from the reference somewhere. An edge
+    /// between vertices that are held is where it was, or a chord of a feature line, which bends.
     fn leaves_surface(&self, setting: &Setting) -> bool {
         self.changed.iter().any(|&i| {
-            let near = self.patch.triangle(self.patch.face(i as usize)[0]);
+            let corners = self.patch.face(i as usize);
+            let is_free = |i: usize| self.free[corners[i % corners.len()] as usize];
+            let near = self.patch.triangle(corners[0]);
             let distance = |at: Point| setting.reference.closest_near(&at, near).distance;
-            gauges(&self.points_of(i)).any(|at| distance(at) > setting.distance)
+            // The middle of the face comes first.
+            let counts = |i: usize| i == 0 || is_free(i - 1) || is_free(i);
+            let points = self.points_of(i);
+            let mut gauges = gauges(&points).enumerate().filter(|&(i, _)| counts(i));
+            gauges.any(|(_, at)| distance(at) > setting.distance)
         })
     }
 
@@ -376,7 +388,7 @@ impl Gate {
 
 impl Default for Shape {
     fn default() -> Self {
-        Self { angles: 0.0, jacobian: 1.0, inverted: 0, deficit: 0.0 }
+        Self { angles: 0.0, corners: 0, jacobian: 1.0, inverted: 0, deficit: 0.0 }
     }
 }
 
@@ -385,6 +397,12 @@ impl Shape {
     #[must_use]
     pub fn angles(&self) -> f64 {
         self.angles
+    }
+
+    /// Mean |angle − ideal| of the corners, degrees.
+    #[must_use]
+    pub fn mean_angle(&self) -> f64 {
+        self.angles / self.corners.max(1) as f64
     }
 
     /// Least scaled Jacobian of the quads.
@@ -405,6 +423,7 @@ impl Shape {
     /// reference at its corners, points is turned over; at a crease they do not agree enough to say.
     fn add(&mut self, points: &[Point], up: &Vector) {
         let n = points.len();
+        self.corners += n;
         let ideal = 180.0 - 360.0 / n as f64;
         let normal = if n == 4 {
             (points[2] - points[0]).cross(&(points[3] - points[1]))
