@@ -12,8 +12,9 @@ use super::Exit;
 pub(super) fn work(report: &Report) -> String {
     let mends = report.mends.mends.iter().map(|m| format!("mended: {}", m.sentence));
     let mut lines: Vec<String> = mends.collect();
-    let [local, walks, refills, types, crossings] = kinds(&report.edits);
-    lines.push(match report.edits.len() {
+    let kinds = kinds(&report.edits);
+    let [local, walks, refills, types, crossings] = kinds;
+    lines.push(match kinds.iter().sum() {
         0 => "no edit found that improves the mesh".to_owned(),
         n => format!(
             "edits made: {n} (local reductions {local}, walks {walks}, refilled patches {refills}, \
@@ -41,19 +42,20 @@ pub(super) fn not_quads(conversion: &Conversion) -> Vec<String> {
 /// How many edits of each kind there are.
 fn kinds(edits: &[EditRecord]) -> [usize; 5] {
     let mut counts = [0; 5];
-    for record in edits {
-        counts[kind(&record.edit)] += 1;
+    for kind in edits.iter().filter_map(|record| kind(&record.edit)) {
+        counts[kind] += 1;
     }
     counts
 }
 
-fn kind(edit: &Edit) -> usize {
+fn kind(edit: &Edit) -> Option<usize> {
     match edit {
-        Edit::Local { .. } => 0,
-        Edit::Walk { .. } => 1,
-        Edit::Refill(_) => 2,
-        Edit::TypeChange { .. } => 3,
-        Edit::Crossing(_) => 4,
+        Edit::Local { .. } => Some(0),
+        Edit::Walk { .. } => Some(1),
+        Edit::Refill(_) => Some(2),
+        Edit::TypeChange { .. } => Some(3),
+        Edit::Crossing(_) => Some(4),
+        Edit::Ideals { .. } => None,
     }
 }
 

@@ -80,6 +80,7 @@ impl Automation<'_> {
         self.smooth_between(mesh, watch)?;
         for i in (0..self.plan.stages).take_while(|_| !watch.cancelled()) {
             watch.stage(i, self.plan.stages);
+            schedule.measure(mesh);
             contact.attach(mesh, self.reference)?;
             let (lambda, faces) = (self.plan.lambda(i), self.patch_faces(i));
             schedule.restart(left(mesh, &contact));
@@ -109,6 +110,7 @@ impl Automation<'_> {
                 self.rounds((mesh, &mut contact), &mut schedule, groups, watch);
             }
         }
+        schedule.finish();
         let types = [Stage::Types];
         self.last_rounds((mesh, &mut contact), &mut schedule, (&types, left), watch)?;
         schedule.rest();

@@ -5,10 +5,10 @@ use super::movement::Cancellation;
 use crate::moves::{Dipole, Step};
 use crate::ops::{Op, Refusal};
 use crate::patch::{Crossing, Refill};
-use crate::sqrtcc::QuadMesh;
+use crate::sqrtcc::{Ideal, QuadMesh};
 use serde::Serialize;
 
-/// A change of connectivity.
+/// What the planner does to the mesh, beside smoothing.
 #[derive(Debug, Clone, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Edit {
@@ -37,6 +37,12 @@ pub enum Edit {
     Refill(Refill),
     /// Features are resampled, and patches on all their sides refilled.
     Crossing(Crossing),
+    /// No change of connectivity: what sectors at features want, measured anew after the features
+    /// have moved. Which feature vertices may go later depends on it.
+    Ideals {
+        /// The ideals that are others now.
+        ideals: Vec<Ideal>,
+    },
 }
 
 /// A term of the cost of a walk, summed over its steps and weighted.
@@ -60,7 +66,7 @@ impl Edit {
             Self::Local { ops } => Self::Local { ops: rebased(ops) },
             Self::TypeChange { ops } => Self::TypeChange { ops: rebased(ops) },
             Self::Crossing(crossing) => Self::Crossing(crossing.rebased(planned, now)),
-            Self::Walk { .. } | Self::Refill(_) => self,
+            Self::Walk { .. } | Self::Refill(_) | Self::Ideals { .. } => self,
         }
     }
 
@@ -74,12 +80,24 @@ impl Edit {
             Self::Walk { start, steps, .. } => walk(mesh, *start, steps),
             Self::Refill(refill) => refill.run(mesh),
             Self::Crossing(crossing) => crossing.run(mesh),
+            Self::Ideals { ideals } => note(mesh, ideals),
         };
         if done.is_err() {
             mesh.undo_to(mark);
         }
         done
     }
+}
+
+/// Notes what sectors want, all of which must exist.
+pub fn note(mesh: &mut QuadMesh, ideals: &[Ideal]) -> Result<(), Refusal> {
+    for &ideal in ideals {
+        if !mesh.has_sector(ideal) {
+            return Err(Refusal::Gone);
+        }
+        mesh.note_ideal(ideal);
+    }
+    Ok(())
 }
 
 /// Walks a dislocation; it may be absorbed at the last step only.

@@ -137,6 +137,29 @@ impl Schedule {
         }
     }
 
+    /// Measures anew what sectors at features want.
+    ///
+    /// *Precondition:* no round since [`Self::rest`].
+    pub fn measure(&mut self, mesh: &mut QuadMesh) {
+        let ideals = mesh.measured_ideals();
+        if ideals.is_empty() {
+            return;
+        }
+        let place = mesh.position(mesh.origin(ideals[0].first)).coords.into();
+        let before = mesh.total_irregularity() as i32;
+        ideals.iter().for_each(|&ideal| mesh.note_ideal(ideal));
+        mesh.commit();
+        let gain = before - mesh.total_irregularity() as i32;
+        let (edit, round) = (Edit::Ideals { ideals }, self.round);
+        self.edits.push(EditRecord { round, gain, cost: 0.0, angle_growth_deg: 0.0, place, edit });
+    }
+
+    /// Forgets measurements after which nothing was edited.
+    pub fn finish(&mut self) {
+        let last = self.edits.iter().rposition(|r| !matches!(r.edit, Edit::Ideals { .. }));
+        self.edits.truncate(last.map_or(0, |i| i + 1));
+    }
+
     /// What edits may still use up.
     #[must_use]
     pub fn slack(&self) -> Slack {

@@ -113,6 +113,7 @@ pub fn words(edit: &Edit) -> String {
             1 => "crossing of a feature".to_owned(),
             n => format!("crossing of {n} features"),
         },
+        Edit::Ideals { ideals } => format!("features measured anew, {} sectors", ideals.len()),
     }
 }
 

@@ -7,6 +7,7 @@ use crate::ops::Op;
 use crate::patch::{Crossing, Refill};
 use crate::planner::edit::Edit;
 use crate::planner::schedule::EditRecord;
+use crate::sqrtcc::Ideal;
 use serde::Serialize;
 use std::fmt::Write;
 use toml::ser::Error;
@@ -30,6 +31,7 @@ enum Entry<'a> {
     Walk { start: Dipole, steps: &'a [Step] },
     Refill(&'a Refill),
     Crossing(&'a Crossing),
+    Ideals { ideals: &'a [Ideal] },
 }
 
 impl<'a> From<&'a Edit> for Entry<'a> {
@@ -39,6 +41,7 @@ impl<'a> From<&'a Edit> for Entry<'a> {
             Edit::Walk { start, steps, .. } => Self::Walk { start: *start, steps },
             Edit::Refill(refill) => Self::Refill(refill),
             Edit::Crossing(crossing) => Self::Crossing(crossing),
+            Edit::Ideals { ideals } => Self::Ideals { ideals },
         }
     }
 }

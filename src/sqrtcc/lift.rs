@@ -8,7 +8,6 @@ use super::QuadMesh;
 use super::quad_mesh::{FACE, GHOST, HELD, QuadKind};
 use crate::mesh::{NONE, Point, PolyMesh, Topology};
 use fixedbitset::FixedBitSet;
-use smallvec::SmallVec;
 use thiserror::Error;
 
 /// Why a mesh cannot be lifted. [`crate::mesh`] mends all of these.
@@ -54,7 +53,9 @@ pub fn lift(mesh: &PolyMesh, features: &FixedBitSet) -> Result<QuadMesh, LiftErr
     let closed = Closed::new(mesh, &topology);
     let mut q = closed.quad_mesh(mesh, features);
     q.hold_frozen_ends();
-    q.set_ideals();
+    for ideal in q.measured_ideals() {
+        q.note_ideal(ideal);
+    }
     q.commit();
     Ok(q)
 }
@@ -204,99 +205,5 @@ impl QuadMesh {
                 }
             }
         }
-    }
-
-    /// Measures each sector between frozen quads and notes its ideal number of faces.
-    fn set_ideals(&mut self) {
-        for v in 0..self.vertex_ids() {
-            if self.is_face(v) || self.is_ghost(v) || !self.is_held(v) {
-                continue;
-            }
-            let starts: SmallVec<[u32; 8]> =
-                self.outgoing(v).filter(|&h| self.is_frozen(Self::quad(self.twin(h)))).collect();
-            let angles: SmallVec<[f64; 8]> =
-                starts.iter().map(|&first| self.sector_angle(first).to_degrees()).collect();
-            let is_inside = self.neighbours(v).all(|f| !self.is_ghost(f));
-            for (&first, quads) in starts.iter().zip(ideals(&angles, is_inside)) {
-                let slot = self.ideal_slot(first);
-                self.ideal[slot] = quads;
-            }
-        }
-    }
-
-    /// Sum of the corner angles at the origin of `first` up to the next frozen quad, radians.
-    fn sector_angle(&self, first: u32) -> f64 {
-        let v = self.origin(first);
-        let arm = |p: u32| self.position(p) - self.position(v);
-        let (mut h, mut angle) = (first, 0.0);
-        loop {
-            // The corner of face target(h) at v lies between the edges of the two quads at h.
-            let before = self.origin(Self::opposite(Self::next(self.twin(h))));
-            let after = self.origin(Self::opposite(h));
-            let turn = arm(before).angle(&arm(after));
-            angle += if turn.is_finite() { turn } else { 0.0 };
-            if self.is_frozen(Self::quad(h)) {
-                return angle;
-            }
-            h = self.ccw(h);
-            if h == first {
-                return angle;
-            }
-        }
-    }
-}
-
-/// How many degrees farther from its right angles a sector may be for its vertex to be regular.
-const REGULAR_IS_WORTH_DEG: f64 = 45.0;
-
-/// The number of faces whose corners come nearest to right angles, for each sector of a vertex. One
-/// more or less in one of them makes a vertex inside the surface regular where that hardly matters:
-/// the corner of an octagonal hole, 225°, may have two faces as well as three, and two are regular.
-fn ideals(angles: &[f64], is_inside: bool) -> SmallVec<[u8; 8]> {
-    let off = |angle: f64, faces: u8| (90.0 * f64::from(faces) - angle).abs();
-    let mut ideals: SmallVec<[u8; 8]> =
-        angles.iter().map(|angle| (angle / 90.0).round().clamp(1.0, 8.0) as u8).collect();
-    let all: i32 = ideals.iter().map(|&faces| i32::from(faces)).sum();
-    if is_inside && (all - 4).abs() == 1 {
-        let other = |faces: u8| if all > 4 { faces - 1 } else { faces + 1 };
-        let costs = angles.iter().zip(&ideals).map(|(&angle, &faces)| {
-            if other(faces) == 0 {
-                f64::INFINITY
-            } else {
-                off(angle, other(faces)) - off(angle, faces)
-            }
-        });
-        let cheapest = costs.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
-        if let Some((i, _)) = cheapest.filter(|&(_, cost)| cost <= REGULAR_IS_WORTH_DEG) {
-            ideals[i] = other(ideals[i]);
-        }
-    }
-    ideals
-}
-
-#[cfg(test)]
-mod tests {
-    use super::ideals;
-
-    #[test]
-    fn corners_come_near_to_right_angles() {
-        assert_eq!(ideals(&[181.0, 178.0], true)[..], [2, 2]);
-        assert_eq!(ideals(&[268.0, 91.0, 90.0], true)[..], [3, 1, 1]);
-        assert_eq!(ideals(&[92.0, 88.0, 90.0], true)[..], [1, 1, 1]);
-        assert_eq!(ideals(&[20.0, 340.0], true)[..], [1, 4]);
-    }
-
-    #[test]
-    fn a_vertex_is_regular_where_that_hardly_matters() {
-        assert_eq!(ideals(&[225.0, 90.0, 90.0], true)[..], [2, 1, 1]);
-        assert_eq!(ideals(&[88.0, 240.0, 91.0], true)[..], [1, 2, 1]);
-        assert_eq!(ideals(&[130.0, 90.0, 90.0], true)[..], [2, 1, 1]);
-        assert_eq!(ideals(&[250.0, 90.0, 90.0], true)[..], [3, 1, 1]);
-    }
-
-    #[test]
-    fn on_a_boundary_nothing_is_gained_by_that() {
-        assert_eq!(ideals(&[226.0], false)[..], [3]);
-        assert_eq!(ideals(&[130.0, 91.0], false)[..], [1, 1]);
     }
 }

@@ -4,6 +4,7 @@
 //! (p, d, p', d'). Source: Peng & Wonka 2013, section 3.1.
 
 mod check;
+mod ideal;
 mod journal;
 mod lift;
 mod lower;
@@ -11,6 +12,7 @@ mod quad_mesh;
 mod sector;
 
 pub use check::Violation;
+pub use ideal::Ideal;
 pub use journal::{Changes, Mark};
 pub use lift::{LiftError, lift};
 pub use lower::{Lowered, lower};

@@ -83,6 +83,7 @@ operations! {
     "operations": raw::Operations, "ops: several operations on the √CC mesh";
     "refill": raw::Refill, "faces, interior, rim, filling, pins: a patch of the √CC mesh";
     "crossing": raw::Crossing, "shifts, refills: features resampled, patches beside them refilled";
+    "ideals": raw::Ideals, "ideals: how many faces sectors at features want";
     "place": raw::Place, "points: one for each vertex, in the order of the output";
     "smooth": smooth::Smooth, "iterations: move the vertices on the reference";
     "optimize": optimize::Optimize, "goal (planar, angles): move the vertices near the reference";

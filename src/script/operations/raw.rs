@@ -4,10 +4,11 @@ use super::Operation;
 use crate::mesh::Point;
 use crate::ops::{Collapse, Flip, Op, Split};
 use crate::patch::{self, Misfit};
+use crate::planner::edit::note;
 use crate::script::error::Trouble;
 use crate::script::run::Done;
 use crate::script::session::Session;
-use crate::sqrtcc::{QuadMesh, Vertex};
+use crate::sqrtcc::{Ideal, QuadMesh, Vertex};
 use crate::watch::Watch;
 use serde::Deserialize;
 
@@ -101,6 +102,20 @@ fn refilled(
     let after: usize = refills.iter().map(|r| r.filling.face_count()).sum();
     let words = format!("{before} faces become {after}");
     Ok(Done { words, refills, ..Done::default() })
+}
+
+/// What sectors at features want.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Ideals {
+    ideals: Vec<Ideal>,
+}
+
+impl Operation for Ideals {
+    fn run(&self, session: &mut Session, _: &dyn Watch) -> Result<Done, Trouble> {
+        note(session.mesh_mut(), &self.ideals)?;
+        Ok(Done { words: format!("{} sectors", self.ideals.len()), ..Done::default() })
+    }
 }
 
 /// Puts every vertex where it is said to be.
