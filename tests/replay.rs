@@ -60,11 +60,11 @@ fn a_log_makes_the_same_bytes_again() {
         let again = replay(&meshes, &log).unwrap();
         assert!(bytes(&again.mesh) == bytes(&done.mesh), "{name}");
         assert_eq!(again.steps.len(), done.report.edits.len() + 1, "{name}: a step for each edit");
-        let kinds = ["operations", "walk", "refill", "crossing", "place"];
+        let kinds = ["operations", "walk", "refill", "crossing", "ideals", "place"];
         let count = |kind| again.steps.iter().filter(|step| step.operation == kind).count();
         say(&format!("{name}: {:?} of {kinds:?}, {} bytes", kinds.map(count), log.len()));
         assert!(name != "bracket" || kinds.map(count).iter().filter(|&&n| n > 0).count() >= 4);
-        assert!(name != "featuretype" || count("crossing") > 0);
+        assert!(name != "featuretype" || count("crossing") > 0 && count("ideals") > 0);
     }
 }
 

@@ -34,7 +34,7 @@ knobs! {
         lambda_last: f64 = 2000.0, in 0.0..=100_000.0, "degree-corners per element";
         /// What a T-junction may cost to be turned into a dual one (a triangle and a vertex of five
         /// edges) at the end.
-        lambda_types: f64 = 150.0, in 0.0..=100_000.0, "degree-corners";
+        lambda_types: f64 = 400.0, in 0.0..=100_000.0, "degree-corners";
         /// Most rounds of moves, and most rounds of refills, in a stage.
         rounds: u32 = 30, in 0.0..=1000.0, "count";
         /// Most rounds of moving elements to where they fit better, in each stage of the second half.

@@ -147,7 +147,9 @@ impl Schedule {
         }
         let place = mesh.position(mesh.origin(ideals[0].first)).coords.into();
         let before = mesh.total_irregularity() as i32;
-        ideals.iter().for_each(|&ideal| mesh.note_ideal(ideal));
+        for &ideal in &ideals {
+            mesh.note_ideal(ideal);
+        }
         mesh.commit();
         let gain = before - mesh.total_irregularity() as i32;
         let (edit, round) = (Edit::Ideals { ideals }, self.round);
