@@ -125,9 +125,7 @@ impl Automation<'_> {
             }
             // Which vertex an operation keeps depends on pins, and a log does not tell these.
             settled.retain(|&v| mesh.is_pin(v));
-            for &v in &settled {
-                mesh.unpin(v);
-            }
+            unpin(mesh, &settled);
         }
         // What mends a quad may make a T-junction where nothing else does.
         let rest = [Stage::Types, Stage::Poor, Stage::Types];
@@ -139,9 +137,7 @@ impl Automation<'_> {
                 mesh.pin(v);
             }
             self.smooth(mesh, self.smooth, watch)?;
-            for &v in &settled {
-                mesh.unpin(v);
-            }
+            unpin(mesh, &settled);
         }
         Ok(schedule)
     }
@@ -204,9 +200,7 @@ impl Automation<'_> {
         let poor = mesh.vertices().filter(is_poor);
         let pins: Vec<Vertex> =
             poor.flat_map(|f| mesh.neighbours(f)).filter(|&v| mesh.is_pin(v)).collect();
-        for &v in &pins {
-            mesh.unpin(v);
-        }
+        unpin(mesh, &pins);
         !pins.is_empty()
     }
 
@@ -303,6 +297,13 @@ impl Automation<'_> {
 /// The faces of the polygon mesh.
 fn faces(mesh: &QuadMesh) -> impl Iterator<Item = Vertex> + '_ {
     mesh.vertices().filter(|&f| mesh.is_face(f))
+}
+
+/// Lets vertices move again.
+fn unpin(mesh: &mut QuadMesh, pins: &[Vertex]) {
+    for &v in pins {
+        mesh.unpin(v);
+    }
 }
 
 /// Number of corners of all faces.

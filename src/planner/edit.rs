@@ -80,24 +80,13 @@ impl Edit {
             Self::Walk { start, steps, .. } => walk(mesh, *start, steps),
             Self::Refill(refill) => refill.run(mesh),
             Self::Crossing(crossing) => crossing.run(mesh),
-            Self::Ideals { ideals } => note(mesh, ideals),
+            Self::Ideals { ideals } => mesh.note_ideals(ideals).then_some(()).ok_or(Refusal::Gone),
         };
         if done.is_err() {
             mesh.undo_to(mark);
         }
         done
     }
-}
-
-/// Notes what sectors want, all of which must exist.
-pub fn note(mesh: &mut QuadMesh, ideals: &[Ideal]) -> Result<(), Refusal> {
-    for &ideal in ideals {
-        if !mesh.has_sector(ideal) {
-            return Err(Refusal::Gone);
-        }
-        mesh.note_ideal(ideal);
-    }
-    Ok(())
 }
 
 /// Walks a dislocation; it may be absorbed at the last step only.

@@ -184,7 +184,7 @@ impl Gate {
         mesh.undo_to(mark);
         let before = self.shape_before(mesh, touched, (setting, contact));
         // Else faces that vanish would be worth their angles, and those that come cost them.
-        let angles_before = before.mean_angle() * self.shape_after().corners as f64;
+        let angles_before = before.mean_angle() * self.corner_count() as f64;
         let allowed = lambda * f64::from(worth);
         let too_steep = |growth: f64| Rejected {
             failure: Failure::Angles,
@@ -297,6 +297,11 @@ impl Gate {
             corners.extend(mesh.neighbours(f).map(|v| self.number[v as usize]));
             self.patch.add_face(&corners);
         }
+    }
+
+    /// Number of corners of the faces of the region.
+    fn corner_count(&self) -> usize {
+        (0..self.patch.face_count()).map(|f| self.patch.face(f).len()).sum()
     }
 
     /// The shape of the relaxed region.

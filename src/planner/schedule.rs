@@ -142,18 +142,17 @@ impl Schedule {
     /// *Precondition:* no round since [`Self::rest`].
     pub fn measure(&mut self, mesh: &mut QuadMesh) {
         let ideals = mesh.measured_ideals();
-        if ideals.is_empty() {
-            return;
-        }
-        let place = mesh.position(mesh.origin(ideals[0].first)).coords.into();
+        let Some(first) = ideals.first() else { return };
+        let place = mesh.position(mesh.origin(first.first)).coords.into();
         let before = mesh.total_irregularity() as i32;
-        for &ideal in &ideals {
-            mesh.note_ideal(ideal);
+        let edit = Edit::Ideals { ideals };
+        if edit.run(mesh).is_ok() {
+            mesh.commit();
+            let gain = before - mesh.total_irregularity() as i32;
+            let round = self.round;
+            let record = EditRecord { round, gain, cost: 0.0, angle_growth_deg: 0.0, place, edit };
+            self.edits.push(record);
         }
-        mesh.commit();
-        let gain = before - mesh.total_irregularity() as i32;
-        let (edit, round) = (Edit::Ideals { ideals }, self.round);
-        self.edits.push(EditRecord { round, gain, cost: 0.0, angle_growth_deg: 0.0, place, edit });
     }
 
     /// Forgets measurements after which nothing was edited.

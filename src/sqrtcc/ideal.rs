@@ -40,19 +40,19 @@ impl QuadMesh {
         measured
     }
 
-    /// Whether there is such a sector.
+    /// Notes what sectors want; false, and only some may be noted, if there is no such sector.
     #[must_use]
-    pub fn has_sector(&self, Ideal { first, faces }: Ideal) -> bool {
-        let quad = Self::quad(first);
-        let exists = quad < self.quad_ids() && self.is_quad_alive(quad) && self.is_frozen(quad);
-        exists && !self.is_face(self.origin(first)) && (1..=MOST).contains(&faces)
-    }
-
-    /// Notes what a sector wants.
-    ///
-    /// *Precondition:* the sector exists, see [`Self::has_sector`].
-    pub fn note_ideal(&mut self, Ideal { first, faces }: Ideal) {
-        self.set_ideal(first, faces);
+    pub fn note_ideals(&mut self, ideals: &[Ideal]) -> bool {
+        ideals.iter().all(|&Ideal { first, faces }| {
+            let quad = Self::quad(first);
+            let exists = quad < self.quad_ids() && self.is_quad_alive(quad) && self.is_frozen(quad);
+            let is_sector = exists && !self.is_face(self.origin(first));
+            let fits = is_sector && (1..=MOST).contains(&faces);
+            if fits {
+                self.set_ideal(first, faces);
+            }
+            fits
+        })
     }
 
     /// Sum of the corner angles at the origin of `first` up to the next frozen quad, radians.

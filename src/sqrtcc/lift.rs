@@ -54,7 +54,7 @@ pub fn lift(mesh: &PolyMesh, features: &FixedBitSet) -> Result<QuadMesh, LiftErr
     let mut q = closed.quad_mesh(mesh, features);
     q.hold_frozen_ends();
     for ideal in q.measured_ideals() {
-        q.note_ideal(ideal);
+        q.set_ideal(ideal.first, ideal.faces);
     }
     q.commit();
     Ok(q)

@@ -2,9 +2,8 @@
 
 use super::Operation;
 use crate::mesh::Point;
-use crate::ops::{Collapse, Flip, Op, Split};
+use crate::ops::{Collapse, Flip, Op, Refusal, Split};
 use crate::patch::{self, Misfit};
-use crate::planner::edit::note;
 use crate::script::error::Trouble;
 use crate::script::run::Done;
 use crate::script::session::Session;
@@ -113,7 +112,9 @@ pub(super) struct Ideals {
 
 impl Operation for Ideals {
     fn run(&self, session: &mut Session, _: &dyn Watch) -> Result<Done, Trouble> {
-        note(session.mesh_mut(), &self.ideals)?;
+        if !session.mesh_mut().note_ideals(&self.ideals) {
+            return Err(Refusal::Gone.into());
+        }
         Ok(Done { words: format!("{} sectors", self.ideals.len()), ..Done::default() })
     }
 }
