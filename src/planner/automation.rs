@@ -65,7 +65,8 @@ impl Automation<'_> {
         let size =
             Size { start: self.faces as i64, now: faces as i64, drift: self.plan.size_drift };
         let mut schedule = Schedule::new(size);
-        let mut contact = Contact::new(self.reference, faces);
+        let probes = || Contact::new(self.reference, faces);
+        let mut contact = probes();
         contact.attach(mesh, self.reference)?;
         let floor = contact.probe_count() as f64 * self.budget.rms.powi(2);
         // Of the mean at a corner: a mesh of fewer faces may not have worse ones.
@@ -111,9 +112,8 @@ impl Automation<'_> {
             }
         }
         schedule.finish();
-        let types = [Stage::Types];
-        self.last_rounds((mesh, &mut contact), &mut schedule, (&types, left), watch)?;
-        schedule.rest();
+        // Its memory is given back before the smoothing, which takes as much.
+        self.last_rounds((mesh, || contact), &mut schedule, (&[Stage::Types], left), watch)?;
         self.release_pins(mesh);
         self.smooth(mesh, self.smooth, watch)?;
         // After the pins of poor quads have been released: most of those can go back then.
@@ -129,9 +129,7 @@ impl Automation<'_> {
         }
         // What mends a quad may make a T-junction where nothing else does.
         let rest = [Stage::Types, Stage::Poor, Stage::Types];
-        if self.last_rounds((mesh, &mut contact), &mut schedule, (&rest, left), watch)? {
-            schedule.rest();
-            drop(contact);
+        if self.last_rounds((mesh, probes), &mut schedule, (&rest, left), watch)? {
             settled.retain(|&v| mesh.is_alive(v));
             for &v in &settled {
                 mesh.pin(v);
@@ -146,23 +144,25 @@ impl Automation<'_> {
     /// angles, whatever is left of them.
     fn last_rounds(
         &self,
-        (mesh, contact): (&mut QuadMesh, &mut Contact),
+        (mesh, contact): (&mut QuadMesh, impl FnOnce() -> Contact),
         schedule: &mut Schedule,
         (stages, slack): (&[Stage], impl Fn(&QuadMesh, &Contact) -> Slack),
         watch: &dyn Watch,
     ) -> Result<bool, MeshError> {
+        // Copies are soon made again; together with the tree of the mesh they are the most there is.
+        schedule.rest();
         // Looking the contact up anew takes longer than all the rest.
         if watch.cancelled() || !stages.iter().any(|&stage| self.has_seeds(mesh, stage)) {
             return Ok(false);
         }
         let before = schedule.edits.len();
-        // Copies are soon made again; together with the tree of the mesh they are the most there is.
-        schedule.rest();
+        let mut contact = contact();
         contact.attach(mesh, self.reference)?;
-        schedule.restart(Slack { angles: f64::INFINITY, ..slack(mesh, contact) });
+        schedule.restart(Slack { angles: f64::INFINITY, ..slack(mesh, &contact) });
         for &stage in stages {
-            self.rounds((mesh, contact), schedule, (stage, self.plan.lambda_types), watch);
+            self.rounds((mesh, &mut contact), schedule, (stage, self.plan.lambda_types), watch);
         }
+        schedule.rest();
         Ok(schedule.edits.len() > before)
     }
 
@@ -217,6 +217,7 @@ impl Automation<'_> {
             reference: self.reference,
             orientation: self.orientation,
             relax: self.relax,
+            fit: self.smooth.fit,
             options: self.gate,
             distance: self.gate.distance * self.hausdorff(),
             growth: GREED * schedule.slack().distance.max(0.0)

@@ -8,7 +8,7 @@ use super::contact::Contact;
 use super::cover::{Cover, fan_distance, gauges};
 use crate::knobs::knobs;
 use crate::mesh::{Point, Vector};
-use crate::smooth::{Orientation, Region as Patch, RelaxOptions, relax_local};
+use crate::smooth::{Orientation, Region as Patch, RelaxOptions, fit_local, relax_local};
 use crate::sqrtcc::{Mark, QuadMesh, Vertex};
 use crate::surface::Reference;
 use smallvec::SmallVec;
@@ -57,6 +57,8 @@ pub struct Setting<'a> {
     pub orientation: Orientation,
     /// How vertices relax.
     pub relax: &'a RelaxOptions,
+    /// Share of the shift after which faces, not corners, lie on the reference in the mean.
+    pub fit: f64,
     /// The limits.
     pub options: &'a GateOptions,
     /// Largest distance to the reference, in units of the file.
@@ -216,6 +218,10 @@ impl Gate {
             if part > 0 {
                 let now = sweeps * part / parts - sweeps * (part - 1) / parts;
                 relax_local(&mut self.patch, setting.reference, setting.relax, now);
+                if part == parts {
+                    // Else all edits would seem to lose what the smoothing before them has fitted.
+                    fit_local(&mut self.patch, setting.reference, setting.relax, setting.fit);
+                }
                 after = self.shape_after();
             }
             let growth = after.angles - (1.0 + hope.share) * angles_before;

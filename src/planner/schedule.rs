@@ -155,8 +155,11 @@ impl Schedule {
         }
     }
 
-    /// Forgets measurements after which nothing was edited.
+    /// Forgets what is of use to moves and refills only, and measurements after which nothing was
+    /// edited.
     pub fn finish(&mut self) {
+        self.without_moves.clear();
+        self.hopeless = FxHashMap::default();
         let last = self.edits.iter().rposition(|r| !matches!(r.edit, Edit::Ideals { .. }));
         self.edits.truncate(last.map_or(0, |i| i + 1));
     }

@@ -409,7 +409,12 @@ impl Kernel {
             let normal = near.normal * setting.sign;
             reference.closest_facing(&centre, &normal, near.last, reach).point - centre
         };
-        let gaps: Vec<Vector> = (0..self.face_count()).into_par_iter().map(gap).collect();
+        let faces = 0..self.face_count();
+        let gaps: Vec<Vector> = if setting.parallel {
+            faces.into_par_iter().map(gap).collect()
+        } else {
+            faces.map(gap).collect()
+        };
         let mut face_of = vec![0u32; self.corners.len()];
         for f in 0..self.face_count() {
             face_of[self.offsets[f] as usize..self.offsets[f + 1] as usize].fill(f as u32);

@@ -28,7 +28,7 @@ pub(crate) use global::limits;
 pub use global::{SmoothReport, held_vertices, smooth};
 pub use guard::Budget;
 pub(crate) use guard::Guard;
-pub use region::{Orientation, Region, RelaxReport, orientation, relax_local};
+pub use region::{Orientation, Region, RelaxReport, fit_local, orientation, relax_local};
 
 knobs! {
     /// How faces pull their corners while edits are judged.

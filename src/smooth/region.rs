@@ -176,6 +176,15 @@ pub fn relax_local(
     RelaxReport { iterations: kernel.iterations, energy: kernel.energy, motion: kernel.motion }
 }
 
+/// Shifts the free vertices of a region that was relaxed along their normals so that the faces lie
+/// on the reference in the mean: `share` of the whole way. The next relaxing puts them back.
+///
+/// Single-threaded. A closest-point query for each face.
+pub fn fit_local(region: &mut Region, reference: &Reference, options: &RelaxOptions, share: f64) {
+    let setting = Setting::new(options, region.orientation.sign(), false);
+    region.kernel.fit(reference, &setting, share);
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
