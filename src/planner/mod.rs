@@ -31,7 +31,7 @@ knobs! {
         /// Exchange rate of the first stage.
         lambda_first: f64 = 80.0, in 0.0..=100_000.0, "degree-corners per element";
         /// Exchange rate of the last stage.
-        lambda_last: f64 = 2000.0, in 0.0..=100_000.0, "degree-corners per element";
+        lambda_last: f64 = 3500.0, in 0.0..=100_000.0, "degree-corners per element";
         /// What a T-junction may cost to be turned into a dual one (a triangle and a vertex of five
         /// edges) at the end.
         lambda_types: f64 = 400.0, in 0.0..=100_000.0, "degree-corners";
