@@ -130,11 +130,15 @@ impl Progress {
 
     /// Reads a mesh within limits, and says what was left out.
     pub(super) fn load(&self, path: &Path, options: &ReadOptions) -> Result<Loaded, Failure> {
-        let loaded = io::read_within(path, options)?;
+        Ok(self.warned(io::read_within(path, options)?))
+    }
+
+    /// Says what was left out of a mesh.
+    pub(super) fn warned(&self, loaded: Loaded) -> Loaded {
         for warning in &loaded.warnings {
             self.tell(&format!("warning: {warning}"));
         }
-        Ok(loaded)
+        loaded
     }
 
     /// How long each phase has taken so far.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use quadmend::config::Config;
-use quadmend::io::Loaded;
+use quadmend::io::{self, Loaded};
 use quadmend::mesh::{MendPolicy, PolyMesh};
 use quadmend::watch::{Phase, Watch};
 
@@ -68,9 +68,12 @@ impl Source {
         let config = self.settings.load()?;
         let progress = self.running.start(stop)?;
         progress.progress(Phase::Read, 0, 1, None);
-        let input = progress.load(&self.input, &config.read)?;
-        let reference =
-            self.reference.as_deref().map(|path| progress.load(path, &config.read)).transpose()?;
+        let read = |path: &Path| io::read_within(path, &config.read);
+        let (input, reference) =
+            rayon::join(|| read(&self.input), || self.reference.as_deref().map(read));
+        // Told in this order whichever was read first.
+        let input = progress.warned(input?);
+        let reference = reference.transpose()?.map(|loaded| progress.warned(loaded));
         let policy = if self.strict { MendPolicy::Strict } else { MendPolicy::Mend };
         Ok(Begun { progress, config, input, reference, policy, stop })
     }
