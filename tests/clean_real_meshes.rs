@@ -120,6 +120,8 @@ impl Faults {
     }
 }
 
+type Figure = fn(&Summary) -> Option<f64>;
+
 /// Irregular elements, T-junctions, angles and distances.
 fn judge_numbers(before: &Summary, after: &Summary, faults: &mut Faults) {
     let most = MOST_E.iter().find(|(name, _)| *name == faults.name).map_or(1.0, |m| m.1);
@@ -128,7 +130,6 @@ fn judge_numbers(before: &Summary, after: &Summary, faults: &mut Faults) {
     let most = (MOST_T_JUNCTIONS * before.t_junctions as f64).floor();
     faults.at_most(T_JUNCTIONS, after.t_junctions as f64, most);
     let [mean, largest] = NOISE_REL;
-    type Figure = fn(&Summary) -> Option<f64>;
     for (what, of, growth, noise) in [
         ("mean angle deviation", (|s| s.fig10_mean) as Figure, GROWTH, 0.0),
         ("Hausdorff distance", |s| s.hausdorff, GROWTH, largest),
