@@ -24,9 +24,9 @@ knobs! {
         refill_sweeps: u32 = 30, in 1.0..=1000.0, "count";
         /// Least scaled Jacobian of a quad, unless it was less before.
         min_jacobian: f64 = 0.4, in -1.0..=1.0, "1";
-        /// Distance to the reference that an edit may cause before the final fit, which takes
-        /// back about two thirds, as a multiple of the input's.
-        distance: f64 = 1.3, in 0.1..=10.0, "input Hausdorff distances";
+        /// Distance to the reference that an edit may cause, as a multiple of what is allowed in the
+        /// end: smoothing takes some of it back.
+        distance: f64 = 1.1, in 0.1..=10.0, "allowed Hausdorff distances";
         /// How far a point of the reference may be from the faces that an edit makes, unless it
         /// was farther before.
         cover_edges: f64 = 1.0, in 0.0..=10.0, "mean edges";
