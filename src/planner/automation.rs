@@ -52,8 +52,6 @@ const FAIR: f64 = 2.0;
 const SLIDES_WITHIN: f64 = 0.3;
 /// Faces whose angles are added by one thread.
 const CHUNK: usize = 4096;
-/// How near to a crease vertices are put onto it in the end, in mean edges.
-const SETTLES_WITHIN: f64 = 0.4;
 /// How many times its even share of the slack in distance an element may use up.
 const GREED: f64 = 16.0;
 
@@ -185,7 +183,7 @@ impl Automation<'_> {
     /// Puts vertices that have ended up near a crease onto it, and pins them: those.
     fn settle(&self, mesh: &mut QuadMesh) -> Vec<Vertex> {
         let rails = Rails { lines: self.creases, ..self.rails() };
-        rails.settle(mesh, SETTLES_WITHIN * self.mean_edge)
+        rails.settle(mesh, self.plan.settles_edges * self.mean_edge)
     }
 
     fn rails(&self) -> Rails<'_> {

@@ -70,6 +70,9 @@ knobs! {
         smooth_between: u32 = 40, in 0.0..=5000.0, "count";
         /// Sweeps over the vertices within features, which slide along them, after each smoothing.
         slides: u32 = 5, in 0.0..=1000.0, "count";
+        /// How near to a crease vertices are put onto it at the end, after which all is smoothed
+        /// once more; 0 leaves them where they are.
+        settles_edges: f64 = 0.4, in 0.0..=2.0, "mean edges";
         /// Make every face a quad at the end, as far as parity allows.
         pure_quad: bool = false, in 0.0..=1.0, "";
     }
