@@ -21,7 +21,7 @@ const PROBE_GAP_EDGES: f64 = 0.29;
 /// How far the middle of a face is from its sides, in mean edges, with room for larger faces.
 const MID_FACE_EDGES: f64 = 0.55;
 /// How far creases may be from the edges on average, in mean edges: folds alone are lost.
-const CREASE_MEAN_EDGES: f64 = 0.01;
+const CREASE_MEAN_EDGES: f64 = 0.015;
 /// Distances are sampled; this much of the diagonal is not seen.
 const NOISE_REL: f64 = 2e-5;
 
