@@ -97,7 +97,7 @@ pub struct MeshToReference {
 /// Normals of faces against those of the nearest triangle of the reference.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Orientation {
-    /// Faces that look away from it, or nowhere.
+    /// Faces that look away from all that is nearest of it, or nowhere.
     pub flipped_faces: usize,
     /// Their share.
     pub flipped_share: f64,
@@ -128,6 +128,9 @@ impl ReferenceMetrics {
         })
     }
 }
+
+/// Triangles whose distances differ by no more than this share of the diagonal are as near.
+const TIE_REL: f64 = 1e-9;
 
 /// Samples, vertices and face centres of the mesh against the reference.
 fn from_mesh(shape: &Shape, own: &Reference, target: &Target) -> (MeshToReference, Orientation) {
@@ -174,8 +177,15 @@ impl Orientation {
     fn new(shape: &Shape, surface: &Reference, at_centres: &[u32]) -> Self {
         let alike = |(n, &t): (&crate::mesh::Vector, &u32)| n.dot(&surface.normal(t));
         let cosines: Vec<f64> = shape.normals.iter().zip(at_centres).map(alike).collect();
-        // The normal of a face without area is NaN: such a face looks nowhere and counts as well.
-        let right = cosines.iter().filter(|&&c| c >= 0.0).count();
+        // At a crease several triangles are nearest, and which of them is found says nothing. The
+        // normal of a face without area is NaN: such a face looks nowhere and counts as well.
+        let looks_along = |&f: &usize| {
+            let (centre, normal, near) = (&shape.centres[f], &shape.normals[f], at_centres[f]);
+            let reach = surface.closest_near(centre, near).distance + TIE_REL * surface.diagonal();
+            let facing = surface.closest_facing(centre, normal, near, reach).triangle;
+            surface.normal(facing).dot(normal) >= 0.0
+        };
+        let right = (0..cosines.len()).filter(|f| cosines[*f] >= 0.0 || looks_along(f)).count();
         let flipped_faces = cosines.len() - right;
         let angle = |c: &f64| c.clamp(-1.0, 1.0).acos().to_degrees();
         Self {
