@@ -43,8 +43,8 @@ fn relax(c: &mut Criterion) {
                 region.add_vertex(p, held, Some(triangle));
             }
             faces.faces().for_each(|f| region.add_face(f));
-            relax_local(&mut region, &surface, &options, 8);
-            relax_local(&mut region, &surface, &options, 16)
+            relax_local(&mut region, (&surface, None), &options, 8);
+            relax_local(&mut region, (&surface, None), &options, 16)
         });
     });
 }

@@ -85,7 +85,7 @@ impl Surroundings {
                 mesh.neighbours(f).filter_map(|v| self.number.get(&v).copied()).collect();
             region.add_face(&corners);
         }
-        relax_local(&mut region, reference, options, iterations);
+        relax_local(&mut region, (reference, None), options, iterations);
         for (i, &v) in self.vertices[..self.inner].iter().enumerate() {
             if !mesh.is_held(v) {
                 mesh.set_position(v, region.point(i as u32));

@@ -186,7 +186,7 @@ impl<'a> Work<'a> {
             let count = round.min(total - done);
             let kernel = &mut self.region.kernel;
             let until = (count, self.options.still_edges);
-            kernel.run(self.guard.reference, &self.setting, until, stops);
+            kernel.run((self.guard.reference, None), &self.setting, until, stops);
             done += count;
             if kernel.motion < self.options.still_edges {
                 break;

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::RelaxOptions;
 use super::fit::{Shape, half_diagonals, polygon};
 use crate::mesh::{Point, Vector};
-use crate::surface::Reference;
+use crate::surface::{Reference, SharpLines};
 
 /// Faces or vertices whose sums are taken together.
 const CHUNK: usize = 256;
@@ -37,6 +37,16 @@ pub(super) struct Target {
     pub(super) sum: [f64; 3],
     pub(super) weight: f64,
 }
+
+/// A held vertex that slides along a crease of the reference, between two others.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rail {
+    pub(super) vertex: u32,
+    pub(super) ends: [u32; 2],
+}
+
+/// Largest share of the way to the next vertex of the crease that one slides in an iteration.
+const GLIDE: f64 = 0.2;
 
 /// Numbers that stay the same during a run.
 #[derive(Debug, Clone, Copy)]
@@ -82,6 +92,7 @@ pub(super) struct Kernel {
     pub(super) offsets: Vec<u32>,
     pub(super) corners: Vec<u32>,
     pub(super) vertices: Vec<Vertex>,
+    pub(super) rails: Vec<Rail>,
     star_offsets: Vec<u32>,
     star: Vec<u32>,
     lead: Vec<Point>,
@@ -160,10 +171,10 @@ impl Kernel {
     }
 
     /// Runs until `iterations` more are done, vertices move less than `still` edges, or `stops`
-    /// says so, which is asked before each iteration.
+    /// says so, which is asked before each iteration. Rails are on `lines`.
     pub(super) fn run(
         &mut self,
-        reference: &Reference,
+        (reference, lines): (&Reference, Option<&SharpLines>),
         setting: &Setting,
         (iterations, still): (u32, f64),
         stops: impl Fn(u32) -> bool,
@@ -178,6 +189,9 @@ impl Kernel {
             self.iterations += 1;
             let project = self.iterations.is_multiple_of(setting.project_every);
             self.step(reference, setting, project);
+            if let Some(lines) = lines {
+                self.glide(lines);
+            }
             if self.motion < still {
                 break;
             }
@@ -373,6 +387,31 @@ impl Kernel {
         let moved = vertex.point - old;
         *lead = vertex.point + moved * on.ahead;
         moved.norm_squared() / edge2
+    }
+
+    /// Moves what is on rails towards where its faces want it, but along the crease.
+    fn glide(&mut self, lines: &SharpLines) {
+        for i in 0..self.rails.len() {
+            let Rail { vertex, ends } = self.rails[i];
+            let targets = self.star(vertex as usize).iter().map(|&c| &self.targets[c as usize]);
+            let (sum, weight) = targets.fold((Vector::zeros(), 0.0), |(sum, weight), t| {
+                (sum + Vector::from(t.sum), weight + t.weight)
+            });
+            let at = self.vertices[vertex as usize].point;
+            let [before, after] = ends.map(|v| self.vertices[v as usize].point);
+            let Some(along) = (after - before).try_normalize(0.0).filter(|_| weight > 0.0) else {
+                continue;
+            };
+            let wanted = along.dot(&(sum / weight - at.coords));
+            let next = if wanted > 0.0 { after } else { before };
+            let most = GLIDE * (next - at).norm();
+            let place = at + along * wanted.clamp(-most, most);
+            // Farther off is another crease.
+            if let Some(place) = lines.closest(&place, most) {
+                self.vertices[vertex as usize].point = place;
+                self.lead[vertex as usize] = place;
+            }
+        }
     }
 
     /// Projects every free vertex that is not where it was last projected. Momentum is kept.

@@ -1,9 +1,9 @@
 //! A few faces to relax around an edit, in buffers that are used again for the next one.
 
 use super::RelaxOptions;
-use super::kernel::{Kernel, Setting, Vertex};
+use super::kernel::{Kernel, Rail, Setting, Vertex};
 use crate::mesh::{NONE, Point, PolyMesh, Vector};
-use crate::surface::{Hit, Reference};
+use crate::surface::{Hit, Reference, SharpLines};
 
 /// How the faces of a mesh are oriented against those of its reference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -76,6 +76,7 @@ impl Region {
         self.kernel.offsets.push(0);
         self.kernel.corners.clear();
         self.kernel.vertices.clear();
+        self.kernel.rails.clear();
         (self.orientation, self.prepared) = (orientation, false);
     }
 
@@ -98,6 +99,16 @@ impl Region {
         debug_assert!(corners.iter().all(|&v| (v as usize) < self.kernel.vertices.len()));
         self.kernel.corners.extend_from_slice(corners);
         self.kernel.offsets.push(self.kernel.corners.len() as u32);
+    }
+
+    /// Lets a held vertex slide along a crease, between the two vertices next to it there.
+    pub fn add_rail(&mut self, vertex: u32, ends: [u32; 2]) {
+        self.kernel.rails.push(Rail { vertex, ends });
+    }
+
+    /// The vertices that slide, each with those next to it on its crease.
+    pub fn rails(&self) -> impl Iterator<Item = (u32, [u32; 2])> + '_ {
+        self.kernel.rails.iter().map(|rail| (rail.vertex, rail.ends))
     }
 
     /// Number of vertices.
@@ -160,7 +171,7 @@ pub struct RelaxReport {
 /// every [`RelaxOptions::project_every`] iterations.
 pub fn relax_local(
     region: &mut Region,
-    reference: &Reference,
+    (reference, lines): (&Reference, Option<&SharpLines>),
     options: &RelaxOptions,
     iterations: u32,
 ) -> RelaxReport {
@@ -171,7 +182,7 @@ pub fn relax_local(
         kernel.find_normals(reference, &setting);
         region.prepared = true;
     }
-    kernel.run(reference, &setting, (iterations, 0.0), |_| false);
+    kernel.run((reference, lines), &setting, (iterations, 0.0), |_| false);
     kernel.land(reference, &setting);
     RelaxReport { iterations: kernel.iterations, energy: kernel.energy, motion: kernel.motion }
 }
@@ -188,7 +199,8 @@ pub fn fit_local(region: &mut Region, reference: &Reference, options: &RelaxOpti
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::trial::grid;
+    use crate::surface::FeatureOptions;
+    use crate::surface::trial::{cube, grid};
 
     const N: u32 = 8;
 
@@ -228,7 +240,7 @@ mod tests {
     fn a_jittered_grid_becomes_regular_again() {
         let mut region = region(jitter);
         let before = far_from_grid(&region);
-        let report = relax_local(&mut region, &plane(), &RelaxOptions::default(), 150);
+        let report = relax_local(&mut region, (&plane(), None), &RelaxOptions::default(), 150);
         assert!(before > 0.5 && far_from_grid(&region) < 0.02, "{}", far_from_grid(&region));
         assert_eq!(report.iterations, 150);
         for (p, v) in region.points().zip(0..) {
@@ -237,12 +249,42 @@ mod tests {
         }
     }
 
+    /// Quads on both sides of an edge of a cube; on the edge itself, vertices crowd at one end.
+    #[test]
+    fn vertices_on_rails_even_out_along_their_crease() {
+        let reference = Reference::new(&cube(8, 0.0, 0.0)).unwrap();
+        let lines = SharpLines::new(&reference, &FeatureOptions::default(), 0.25);
+        let even = |i: u32| 0.15 * f64::from(i) - 0.45;
+        let mut region = Region::new();
+        region.begin(Orientation::Along);
+        for i in 0..=6 {
+            let crowded = if i % 6 == 0 { 0.0 } else { -0.02 * f64::from(i) };
+            for [y, z, shift] in [[1.0, 0.85, 0.0], [1.0, 1.0, crowded], [0.85, 1.0, 0.0]] {
+                region.add_vertex(Point::new(even(i) + shift, y, z), true, None);
+            }
+        }
+        for (i, side) in (0..6).flat_map(|i| [(i, 0), (i, 1)]) {
+            let first = 3 * i + side;
+            region.add_face(&[first, first + 1, first + 4, first + 3]);
+        }
+        for i in 1..6 {
+            region.add_rail(3 * i + 1, [3 * i - 2, 3 * i + 4]);
+        }
+        let on = (&reference, Some(&lines));
+        relax_local(&mut region, on, &RelaxOptions::default(), 60);
+        for i in 0..=6 {
+            let place = Point::new(even(i), 1.0, 1.0);
+            assert!((region.point(3 * i + 1) - place).norm() < 1e-3, "{i}");
+            assert_eq!(region.point(3 * i), Point::new(even(i), 1.0, 0.85), "the others are held");
+        }
+    }
+
     #[test]
     fn turned_over_quads_are_turned_right() {
         let middle = (N / 2) * (N + 1) + N / 2;
         let mut region =
             region(|v| if v == middle { Vector::new(1.4, 1.4, 0.0) } else { Vector::zeros() });
-        relax_local(&mut region, &plane(), &RelaxOptions::default(), 100);
+        relax_local(&mut region, (&plane(), None), &RelaxOptions::default(), 100);
         assert!(far_from_grid(&region) < 0.02, "{}", far_from_grid(&region));
     }
 
@@ -250,8 +292,8 @@ mod tests {
     fn relaxing_in_two_parts_goes_on_where_it_was() {
         let mut region = region(jitter);
         let options = RelaxOptions::default();
-        let first = relax_local(&mut region, &plane(), &options, 10);
-        let second = relax_local(&mut region, &plane(), &options, 20);
+        let first = relax_local(&mut region, (&plane(), None), &options, 10);
+        let second = relax_local(&mut region, (&plane(), None), &options, 20);
         assert_eq!((first.iterations, second.iterations), (10, 30));
         assert!(second.energy < first.energy);
     }
@@ -284,7 +326,7 @@ mod tests {
             }
         }
         let plane = Reference::new(&grid(7)).unwrap();
-        relax_local(&mut region, &plane, &RelaxOptions::default(), 300);
+        relax_local(&mut region, (&plane, None), &RelaxOptions::default(), 300);
         let [a, h, b] = [at(3, 1), split[0], at(3, 2)].map(|v| region.point(v));
         let bend = (h - a).angle(&(b - h)).to_degrees();
         assert!(bend < 8.0, "the side of the T-junction bends by {bend} degrees");
