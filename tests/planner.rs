@@ -302,6 +302,27 @@ fn a_mesh_is_cleaned_without_a_reference() {
     assert!(after.irregular_elements * 2 <= before.irregular_elements, "half of it at least");
 }
 
+/// What is left may be a vertex or a face; `cost.face` decides where a refill has the choice.
+#[test]
+fn survivors_are_of_the_type_that_costs_less() {
+    let irregular_faces = |price: &str| -> usize {
+        let left = |seed: u64| {
+            let mut q = lifted(&shapes::sphere(10));
+            mess_up(&mut q, &mut Dice(seed), 25);
+            let messy = lower(&q, &[String::new()]).expect("a sphere").mesh;
+            let config = Config::default().with_assignment(price).expect("a price");
+            let surface = shapes::sphere(30);
+            let done = pipeline::clean(messy, Some(&surface), MendPolicy::Mend, &config, &Silent)
+                .expect("it is cleaned");
+            done.mesh.faces().filter(|f| f.len() != 4).count()
+        };
+        (0..4).map(left).sum()
+    };
+    let [dear, cheap] = ["cost.face=2000", "cost.face=-2000"].map(irregular_faces);
+    say(&format!("irregular faces left: {dear} where they are dear, {cheap} where cheap"));
+    assert!(dear < cheap);
+}
+
 #[test]
 fn the_global_plan_brings_opposite_burgers_vectors_together() {
     let (mut one, mut two) = (0, 0);

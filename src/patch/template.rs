@@ -61,6 +61,12 @@ impl Filling {
         vertices + self.faces().map(|f| (f.len() as u32).abs_diff(4)).sum::<u32>()
     }
 
+    /// Number of faces that are no quads.
+    #[must_use]
+    pub fn irregular_faces(&self) -> usize {
+        self.faces().filter(|f| f.len() != 4).count()
+    }
+
     /// The faces, each as its vertices.
     #[must_use]
     pub fn faces(&self) -> impl ExactSizeIterator<Item = &[u32]> + '_ {

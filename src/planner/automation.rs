@@ -66,10 +66,9 @@ impl Automation<'_> {
         let probes = || Contact::new(self.reference, faces);
         let mut contact = probes();
         contact.attach(mesh, self.reference)?;
-        let floor = contact.probe_count() as f64 * self.budget.rms.powi(2);
         // Of the mean at a corner: a mesh of fewer faces may not have worse ones.
         let allowed = Slack {
-            distance: self.gate.rms.powi(2) * contact.squared_distances().max(floor),
+            distance: (self.gate.rms * self.budget.rms).powi(2) * contact.probe_count() as f64,
             angles: self.gate.angles * (angles(mesh) / corners(mesh)).max(FAIR),
         };
         let left = |mesh: &QuadMesh, contact: &Contact| Slack {
@@ -83,21 +82,21 @@ impl Automation<'_> {
             contact.attach(mesh, self.reference)?;
             let (lambda, faces) = (self.plan.lambda(i), self.patch_faces(i));
             schedule.restart(left(mesh, &contact));
-            let refills = (Stage::Refills { faces }, lambda);
+            let refills = (Stage::Refills, lambda);
             for step in [(Stage::Moves, lambda), refills] {
-                self.rounds((mesh, &mut contact), &mut schedule, step, watch);
+                self.rounds((mesh, &mut contact), &mut schedule, (step, faces), watch);
             }
             // Early on most elements vanish anyway: moving them first is lost work.
             if self.plan.relocations > 0 && 2 * i >= self.plan.stages {
                 // What has moved may be near enough to others now to cancel.
-                let relocations = (Stage::Relocations { faces }, -self.plan.relocation_saves);
+                let relocations = (Stage::Relocations, -self.plan.relocation_saves);
                 for step in [relocations, refills] {
-                    self.rounds((mesh, &mut contact), &mut schedule, step, watch);
+                    self.rounds((mesh, &mut contact), &mut schedule, (step, faces), watch);
                 }
             }
             if self.plan.crossings > 0 {
-                for step in [(Stage::Crossings { faces }, lambda), refills] {
-                    self.rounds((mesh, &mut contact), &mut schedule, step, watch);
+                for step in [(Stage::Crossings, lambda), refills] {
+                    self.rounds((mesh, &mut contact), &mut schedule, (step, faces), watch);
                 }
             }
             if i + 1 < self.plan.stages {
@@ -105,11 +104,10 @@ impl Automation<'_> {
                 self.smooth_between(mesh, watch)?;
             } else {
                 // After all that is greedy: so the global plan never leaves more than that alone.
-                let groups = (Stage::Groups { faces }, lambda);
-                self.rounds((mesh, &mut contact), &mut schedule, groups, watch);
+                let groups = (Stage::Groups, lambda);
+                self.rounds((mesh, &mut contact), &mut schedule, (groups, faces), watch);
             }
         }
-        schedule.finish();
         // Its memory is given back before the smoothing, which takes as much.
         self.last_rounds((mesh, || contact), &mut schedule, (&[Stage::Types], left), watch)?;
         self.release_pins(mesh);
@@ -147,6 +145,7 @@ impl Automation<'_> {
         (stages, slack): (&[Stage], impl Fn(&QuadMesh, &Contact) -> Slack),
         watch: &dyn Watch,
     ) -> Result<bool, MeshError> {
+        schedule.finish();
         // Copies are soon made again; together with the tree of the mesh they are the most there is.
         schedule.rest();
         // Looking the contact up anew takes longer than all the rest.
@@ -158,7 +157,8 @@ impl Automation<'_> {
         contact.attach(mesh, self.reference)?;
         schedule.restart(Slack { angles: f64::INFINITY, ..slack(mesh, &contact) });
         for &stage in stages {
-            self.rounds((mesh, &mut contact), schedule, (stage, self.plan.lambda_types), watch);
+            let step = (stage, self.plan.lambda_types);
+            self.rounds((mesh, &mut contact), schedule, (step, 0), watch);
         }
         schedule.rest();
         Ok(schedule.edits.len() > before)
@@ -207,12 +207,15 @@ impl Automation<'_> {
         &self,
         (mesh, contact): (&mut QuadMesh, &mut Contact),
         schedule: &mut Schedule,
-        (stage, lambda): (Stage, f64),
+        ((stage, lambda), faces): ((Stage, f64), usize),
         watch: &dyn Watch,
     ) {
         schedule.restart(schedule.slack());
+        let slide = self.plan.slides > 0 && stage.slides();
         let gate = Setting {
             reference: self.reference,
+            lines: self.lines,
+            rails: slide.then(|| self.rails().tolerance),
             orientation: self.orientation,
             relax: self.relax,
             fit: self.smooth.fit,
@@ -223,8 +226,8 @@ impl Automation<'_> {
             cover: (self.gate.cover_edges * self.mean_edge).min(self.hausdorff()),
         };
         let rounds = match stage {
-            Stage::Groups { .. } => self.plan.global,
-            Stage::Relocations { .. } => self.plan.relocations,
+            Stage::Groups => self.plan.global,
+            Stage::Relocations => self.plan.relocations,
             _ => self.plan.rounds,
         };
         let mut tried = BTreeSet::new();
@@ -233,12 +236,13 @@ impl Automation<'_> {
                 break;
             }
             let groups = match stage {
-                Stage::Groups { .. } => groups(mesh, &mut tried),
+                Stage::Groups => groups(mesh, &mut tried),
                 _ => BTreeMap::new(),
             };
             let task = Task {
                 stage,
                 lambda,
+                faces,
                 groups: &groups,
                 plan: self.plan,
                 costs: self.costs,

@@ -27,9 +27,16 @@ pub struct Clusters {
     joint: Grower,
     parent: Vec<Vertex>,
     visited: Vec<Vertex>,
+    /// Whether a region was too large.
+    limited: bool,
 }
 
 impl Clusters {
+    /// Whether a region has been left out since this was asked last because it was too large.
+    pub fn take_limited(&mut self) -> bool {
+        std::mem::take(&mut self.limited)
+    }
+
     /// Convex disks around `seed`, small to large: with each of the nearest irregular elements
     /// alone, and with the first two, three, … of them together. Only regions whose irregularity
     /// can fall are given. O(faces · regions).
@@ -83,7 +90,9 @@ impl Clusters {
         for &f in faces {
             self.grower.add_face(mesh, f);
         }
-        self.grower.convex(mesh, most).ok()
+        let region = self.grower.convex(mesh, most);
+        self.limited |= is_too_large(&region);
+        region.ok()
     }
 
     /// The feature edges nearest to `seed` by steps that cross none, each as the half-edge from an
@@ -140,6 +149,7 @@ impl Clusters {
         let alone = grow(&mut self.grower, mesh, (at, &self.parent), &[], most);
         // A convex disk around more is no smaller: what is too large will not fit any more.
         if is_too_large(&alone) {
+            self.limited = true;
             return;
         }
         keep(alone, regions);
@@ -159,6 +169,7 @@ impl Clusters {
                 keep(together, regions);
             }
         }
+        self.limited |= !fits;
         self.forget();
     }
 

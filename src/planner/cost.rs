@@ -27,6 +27,9 @@ knobs! {
         t_junction_pair: f64 = 0.0, in 0.0..=100.0, "per absorption";
         /// Any other quadruple cancellation (two opposite pairs vanish), beside its last step.
         quadruple: f64 = 0.0, in 0.0..=100.0, "per absorption";
+        /// What an irregular face costs more than an irregular vertex where a refill leaves the choice;
+        /// if negative, less.
+        face: f64 = 0.0, in -100_000.0..=100_000.0, "degree-corners";
     }
 }
 

@@ -6,11 +6,12 @@
 
 use super::contact::Contact;
 use super::cover::{Cover, fan_distance, gauges};
+use super::lines::beside;
 use crate::knobs::knobs;
 use crate::mesh::{Point, Vector};
 use crate::smooth::{Orientation, Region as Patch, RelaxOptions, fit_local, relax_local};
 use crate::sqrtcc::{Mark, QuadMesh, Vertex};
-use crate::surface::Reference;
+use crate::surface::{Reference, SharpLines};
 use smallvec::SmallVec;
 
 knobs! {
@@ -32,17 +33,17 @@ knobs! {
         cover_edges: f64 = 1.0, in 0.0..=10.0, "mean edges";
         /// Hausdorff distance that edits and smoothing may cause, as a multiple of the input's. It is
         /// known from samples only: the part below 1 is for what falls between them.
-        hausdorff: f64 = 0.92, in 0.1..=100.0, "input Hausdorff distances";
+        hausdorff: f64 = 0.88, in 0.1..=100.0, "input Hausdorff distances";
         /// Root mean square distance of the reference to the mesh that all edits together may
         /// cause, as a multiple of the input's.
-        rms: f64 = 1.1, in 0.0..=100.0, "input RMS distances";
+        rms: f64 = 1.2, in 0.0..=100.0, "input RMS distances";
         /// Hausdorff distance allowed where the mesh is its own reference, and so at none from it.
         own_hausdorff_edges: f64 = 0.2, in 0.0..=10.0, "mean edges";
         /// Root mean square distance allowed where the mesh is its own reference.
         own_rms_edges: f64 = 0.03, in 0.0..=10.0, "mean edges";
         /// Mean deviation of corner angles that all edits together may cause, as a multiple of the
         /// input's, or of 2 degrees if that is more.
-        angles: f64 = 0.78, in 0.0..=100.0, "input deviations";
+        angles: f64 = 0.75, in 0.0..=100.0, "input deviations";
         /// Largest |ln| of the number of faces after over before a refill.
         area: f64 = 0.3, in 0.0..=3.0, "ln";
     }
@@ -53,6 +54,10 @@ knobs! {
 pub struct Setting<'a> {
     /// The surface to stay on.
     pub reference: &'a Reference,
+    /// Its sharp features, along which vertices of feature lines slide,
+    pub lines: &'a SharpLines,
+    /// if they are this near to them, in units of the file.
+    pub rails: Option<f64>,
     /// How the mesh is oriented against it.
     pub orientation: Orientation,
     /// How vertices relax.
@@ -113,6 +118,27 @@ pub fn shape_of(mesh: &QuadMesh, faces: impl Iterator<Item = Vertex>) -> Shape {
     shape
 }
 
+/// What an edit may cost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Price {
+    /// How many elements it is worth,
+    pub worth: u32,
+    /// at so many degrees of corner angle each,
+    pub lambda: f64,
+    /// less what it costs otherwise;
+    pub extra: f64,
+    /// what a better one costs, degrees: dearer ones need not be looked at to the end.
+    pub most: f64,
+}
+
+impl Price {
+    /// Of an edit that costs nothing but angles, whatever others cost.
+    #[must_use]
+    pub fn of(worth: u32, lambda: f64) -> Self {
+        Self { worth: worth.max(1), lambda, extra: 0.0, most: f64::INFINITY }
+    }
+}
+
 /// An edit that did not pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rejected {
@@ -160,6 +186,8 @@ pub struct Gate {
     /// Faces of the region, as numbers of the patch, that the edit made or changed.
     changed: Vec<u32>,
     patch: Patch,
+    /// How far feature edges were from the crease before.
+    bend: f64,
     /// The faces of the region, relaxed.
     cover: Cover,
 }
@@ -191,14 +219,14 @@ const HOPES: [Hope; 7] = [
 const COVERS: u32 = 1;
 
 impl Gate {
-    /// Judges what was done to `mesh` since `mark`, which touched those vertices, worth so many elements at λ degrees each.
+    /// Judges what was done to `mesh` since `mark`, which touched those vertices.
     /// The mesh is as before the edit afterwards: a caller that wants it makes it again.
     pub fn judge(
         &mut self,
         mesh: &mut QuadMesh,
         (mark, touched): (Mark, &[Vertex]),
         (setting, contact): (&Setting, &Contact),
-        (sweeps, worth, lambda): (u32, u32, f64),
+        (sweeps, Price { worth, lambda, extra, most }): (u32, Price),
     ) -> Result<Passed, Rejected> {
         self.gather(mesh, touched, (setting, contact));
         // The patch holds a copy of the edited surroundings: the mesh can go back already.
@@ -207,17 +235,17 @@ impl Gate {
         let mut after = self.shape_after();
         // Else faces that vanish would be worth their angles, and those that come cost them.
         let angles_before = before.mean_angle() * after.corners as f64;
-        let allowed = lambda * f64::from(worth);
-        let too_steep = |growth: f64| Rejected {
-            failure: Failure::Angles,
-            needs: growth / f64::from(worth.max(1)),
-        };
+        let worth = f64::from(worth);
+        let allowed = lambda * worth - extra;
+        let too_steep =
+            |growth: f64| Rejected { failure: Failure::Angles, needs: (growth + extra) / worth };
         let least = setting.options.min_jacobian.min(before.jacobian);
         let parts = HOPES.len() as u32 - 1;
         for (hope, part) in HOPES.iter().zip(0..) {
             if part > 0 {
                 let now = sweeps * part / parts - sweeps * (part - 1) / parts;
-                relax_local(&mut self.patch, setting.reference, setting.relax, now);
+                let on = (setting.reference, Some(setting.lines));
+                relax_local(&mut self.patch, on, setting.relax, now);
                 if part == parts {
                     // Else all edits would seem to lose what the smoothing before them has fitted.
                     fit_local(&mut self.patch, setting.reference, setting.relax, setting.fit);
@@ -227,6 +255,9 @@ impl Gate {
             let growth = after.angles - (1.0 + hope.share) * angles_before;
             if growth > hope.times * allowed {
                 return Err(too_steep(growth / hope.times));
+            }
+            if growth > most.max(hope.times * most) {
+                return Err(Rejected { failure: Failure::Angles, needs: lambda });
             }
             if (least - after.jacobian).max(after.deficit - before.deficit) > hope.lack {
                 return Err(Failure::Jacobian.into());
@@ -240,13 +271,18 @@ impl Gate {
         if after.inverted > before.inverted {
             return Err(Failure::Jacobian.into());
         }
-        let growth = self.uncovered(touched, (setting, contact)).ok_or(Failure::Distance)?;
-        if self.leaves_surface(setting) || growth > setting.growth * f64::from(worth) {
+        if self.bend(setting.lines) > self.bend.max(setting.rails.unwrap_or(0.0)) {
             return Err(Failure::Distance.into());
         }
-        let places = self.vertices.iter().zip(0..).filter(|&(_, i)| self.free[i as usize]);
-        let moved =
-            places.map(|(&v, i)| (v, self.patch.point(i), self.patch.triangle(i))).collect();
+        let growth = self.uncovered(touched, (setting, contact)).ok_or(Failure::Distance)?;
+        if self.leaves_surface(setting) || growth > setting.growth * worth {
+            return Err(Failure::Distance.into());
+        }
+        let free = (0..self.free.len() as u32).filter(|&i| self.free[i as usize]);
+        let places = free.chain(self.patch.rails().map(|(i, _)| i));
+        let place =
+            |i: u32| (self.vertices[i as usize], self.patch.point(i), self.patch.triangle(i));
+        let moved = places.map(place).collect();
         Ok(Passed {
             angle_growth: after.angles - angles_before,
             shape: after,
@@ -290,7 +326,7 @@ impl Gate {
         self.changed.clear();
         let changed = self.faces.iter().zip(0..).filter(|(f, _)| touched.binary_search(f).is_ok());
         self.changed.extend(changed.map(|(_, i)| i));
-        self.fill_patch(mesh, first, (setting.orientation, contact));
+        self.fill_patch(mesh, first, (setting, contact));
     }
 
     fn add_vertex(&mut self, mesh: &QuadMesh, v: Vertex) {
@@ -315,9 +351,9 @@ impl Gate {
         &mut self,
         mesh: &QuadMesh,
         expanded: usize,
-        (orientation, contact): (Orientation, &Contact),
+        (setting, contact): (&Setting, &Contact),
     ) {
-        self.patch.begin(orientation);
+        self.patch.begin(setting.orientation);
         self.free.clear();
         for (i, &v) in self.vertices.iter().enumerate() {
             let free = i < expanded && !mesh.is_held(v);
@@ -330,6 +366,35 @@ impl Gate {
             corners.extend(mesh.neighbours(f).map(|v| self.number[v as usize]));
             self.patch.add_face(&corners);
         }
+        if let Some(reach) = setting.rails {
+            self.add_rails(mesh, expanded, (setting.lines, reach));
+        }
+        self.bend = self.bend(setting.lines);
+    }
+
+    /// Lets those of the first vertices slide that are within a feature line, between quads: triangles
+    /// would pull them to where no quad wants them later.
+    fn add_rails(&mut self, mesh: &QuadMesh, first: usize, (lines, reach): (&SharpLines, f64)) {
+        for i in (0..first).filter(|&i| !self.free[i]) {
+            let v = self.vertices[i];
+            let is_between_quads = || mesh.neighbours(v).all(|f| mesh.valence(f) == 4);
+            let is_on = || lines.closest(&mesh.position(v), reach).is_some();
+            if let Some(ends) = beside(mesh, v).filter(|_| is_between_quads() && is_on()) {
+                self.patch.add_rail(i as u32, ends.map(|end| self.number[end as usize]));
+            }
+        }
+    }
+
+    /// How far the middle of an edge beside a vertex that slides is from the crease, at most.
+    fn bend(&self, lines: &SharpLines) -> f64 {
+        let edges = self.patch.rails().flat_map(|(v, ends)| ends.map(|end| [v, end]));
+        let bends = edges.map(|edge| {
+            let [a, b] = edge.map(|v| self.patch.point(v));
+            let middle = nalgebra::center(&a, &b);
+            let on = lines.closest(&middle, (b - a).norm());
+            on.map_or(f64::INFINITY, |on| (on - middle).norm())
+        });
+        bends.fold(0.0, f64::max)
     }
 
     /// The shape of the relaxed region.
@@ -476,7 +541,7 @@ impl Shape {
             let sine = to_next.cross(&to_prev).dot(&unit) / scale;
             let angle = if scale > 0.0 {
                 let cosine = (to_next.dot(&to_prev) / scale).clamp(-1.0, 1.0);
-                let turn = cosine.acos().to_degrees();
+                let turn = rough_acos(cosine).to_degrees();
                 if sine < 0.0 { 360.0 - turn } else { turn }
             } else {
                 0.0
@@ -490,5 +555,35 @@ impl Shape {
         self.jacobian = self.jacobian.min(least);
         self.inverted += u32::from(least < 0.0);
         self.deficit += (POOR - least).max(0.0);
+    }
+}
+
+/// The arc cosine to 3e-8, three times as fast. Abramowitz & Stegun 1964, 4.4.46.
+fn rough_acos(x: f64) -> f64 {
+    const TERMS: [f64; 8] = [
+        -0.001_262_491_1,
+        0.006_670_090_1,
+        -0.017_088_125_6,
+        0.030_891_881_0,
+        -0.050_174_304_6,
+        0.088_978_987_4,
+        -0.214_598_801_6,
+        1.570_796_305_0,
+    ];
+    let polynomial = TERMS.into_iter().fold(0.0, |sum, term| sum * x.abs() + term);
+    let acos = (1.0 - x.abs()).sqrt() * polynomial;
+    if x < 0.0 { std::f64::consts::PI - acos } else { acos }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rough_arc_cosine_is_right_to_3e_8() {
+        for i in -1000..=1000 {
+            let x = f64::from(i) / 1000.0;
+            assert!((rough_acos(x) - x.acos()).abs() < 2.5e-8, "{x}");
+        }
     }
 }

@@ -27,7 +27,7 @@ pub struct EditRecord {
     pub round: u32,
     /// Irregular elements fewer; negative where a T-junction was worth more.
     pub gain: i32,
-    /// Cost of the path, 0 for refills.
+    /// Cost of the path; of a refill, that of its irregular faces.
     pub cost: f64,
     /// Growth of Σ |angle − ideal| around it, degrees.
     pub angle_growth_deg: f64,
@@ -59,11 +59,21 @@ pub struct RoundRecord {
 #[derive(Debug, Clone)]
 struct Failed {
     round: u32,
+    season: u32,
     /// Without a change here it will be the same again …
     scope: Vec<Vertex>,
-    /// … until the exchange rate comes near this.
+    /// … until the exchange rate comes near this,
     needs: f64,
+    /// or patches may have more faces than this.
+    faces: usize,
 }
+
+/// Where more than half of the proposals meet others, seeds are taken this many steps farther apart,
+const WIDER: u32 = 2;
+/// as long as so many are made in a round: enough for all threads.
+const MANY: usize = 16;
+/// What failed for another reason than its price may pass in the next season.
+const AT_ANY_RATE: (f64, usize) = (f64::NEG_INFINITY, usize::MAX);
 
 /// What all edits together may still use up.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -82,14 +92,16 @@ pub struct Schedule {
     changes: Vec<Changes>,
     /// The round in which the connectivity around a vertex last changed.
     changed: Vec<u32>,
-    /// Seeds for which moves were looked for in vain, over all stages.
-    without_moves: BTreeMap<Vertex, Failed>,
-    /// Seeds for which nothing else was found, in this stage.
-    failed: BTreeMap<Vertex, Failed>,
+    /// Seeds for which nothing was found, by what was looked for.
+    failed: BTreeMap<(Stage, Vertex), Failed>,
     round: u32,
+    /// How often the rules have changed.
+    season: u32,
     /// Refills that failed, and the exchange rate at which they might have passed.
     hopeless: FxHashMap<RefillKey, f64>,
     spacing: Spacing,
+    /// Steps beside [`PlanOptions::spacing`](super::PlanOptions::spacing) that seeds are apart.
+    spread: u32,
     slack: Slack,
     size: Size,
     /// The edits made so far.
@@ -108,11 +120,12 @@ impl Schedule {
             workers,
             changes: Vec::new(),
             changed: Vec::new(),
-            without_moves: BTreeMap::new(),
             failed: BTreeMap::new(),
             round: 0,
+            season: 0,
             hopeless: FxHashMap::default(),
             spacing: Spacing::default(),
+            spread: 0,
             slack: Slack::default(),
             size,
             edits: Vec::new(),
@@ -120,10 +133,11 @@ impl Schedule {
         }
     }
 
-    /// Lets every element be tried again: the rules have changed, or the mesh has. From now on
-    /// edits may use up `slack`.
+    /// The rules have changed, or the mesh has: what failed may be tried again. From now on edits
+    /// may use up `slack`.
     pub fn restart(&mut self, slack: Slack) {
-        self.failed.clear();
+        self.season += 1;
+        self.spread = 0;
         self.slack = slack;
     }
 
@@ -131,7 +145,6 @@ impl Schedule {
     /// anything may write to it.
     pub fn rest(&mut self) {
         self.changes.clear();
-        self.failed.clear();
         for worker in &mut self.workers {
             *worker.get_mut().unwrap_or_else(PoisonError::into_inner) = Worker::default();
         }
@@ -158,7 +171,7 @@ impl Schedule {
     /// Forgets what is of use to moves and refills only, and measurements after which nothing was
     /// edited.
     pub fn finish(&mut self) {
-        self.without_moves.clear();
+        self.failed.clear();
         self.hopeless = FxHashMap::default();
         let last = self.edits.iter().rposition(|r| !matches!(r.edit, Edit::Ideals { .. }));
         self.edits.truncate(last.map_or(0, |i| i + 1));
@@ -193,13 +206,22 @@ impl Schedule {
             for failure in outcome.failures {
                 *record.turned_down.entry(failure).or_default() += 1;
             }
-            match outcome.proposal {
-                Some(proposal) => proposals.push((proposal, outcome.scope)),
-                None => self.fail(seed, task, outcome.scope, outcome.needs),
+            if let Some(proposal) = outcome.proposal {
+                proposals.push((proposal, outcome.scope));
+            } else {
+                let faces = if outcome.limited { task.faces } else { usize::MAX };
+                self.fail((seed, outcome.scope), task, (outcome.needs, faces));
             }
         }
         record.proposed = proposals.len();
         record.made = self.commit((mesh, contact), proposals, task);
+        self.spread = if record.made < MANY {
+            0
+        } else if record.made * 2 < record.proposed {
+            self.spread + WIDER
+        } else {
+            self.spread
+        };
         record.irregularity = mesh.total_irregularity();
         watch.edited(self.edits.len(), record.irregularity);
         self.rounds.push(record);
@@ -211,17 +233,17 @@ impl Schedule {
     fn seeds(&mut self, mesh: &QuadMesh, task: &Task) -> Vec<Vertex> {
         self.changed.resize(mesh.vertex_ids() as usize, 0);
         let is_changed = |f: &Failed| f.scope.iter().any(|&s| self.changed[s as usize] >= f.round);
-        let is_affordable = |f: &Failed| f.needs <= FORGIVING * task.lambda;
-        let fresh = |v: &Vertex| match task.stage {
-            Stage::Moves => {
-                let known = self.without_moves.get(v);
-                known.is_none_or(|f| {
-                    is_changed(f) || is_affordable(f) && !self.failed.contains_key(v)
-                })
-            }
-            _ => self.failed.get(v).is_none_or(is_changed),
+        let may_pass = |f: &Failed| {
+            f.season < self.season
+                && (!task.stage.is_remembered()
+                    || f.needs <= FORGIVING * task.lambda
+                    || f.faces < task.faces)
         };
-        if let Stage::Groups { .. } = task.stage {
+        let fresh = |&v: &Vertex| {
+            let known = self.failed.get(&(task.stage, v));
+            known.is_none_or(|f| may_pass(f) || is_changed(f))
+        };
+        if task.stage == Stage::Groups {
             return task.groups.keys().copied().collect();
         }
         if task.stage == Stage::Poor {
@@ -230,15 +252,19 @@ impl Schedule {
         }
         let fresh: Vec<Vertex> = mesh.irregular().into_iter().filter(fresh).collect();
         self.spacing.start(mesh);
-        fresh.into_iter().filter(|&v| self.spacing.take(mesh, v, task.plan.spacing)).collect()
+        let steps = task.plan.spacing + self.spread;
+        fresh.into_iter().filter(|&v| self.spacing.take(mesh, v, steps)).collect()
     }
 
-    fn fail(&mut self, seed: Vertex, task: &Task, scope: Vec<Vertex>, needs: f64) {
-        let failed = Failed { round: self.round, scope, needs };
-        if task.stage == Stage::Moves {
-            self.without_moves.insert(seed, failed.clone());
-        }
-        self.failed.insert(seed, failed);
+    /// Remembers that nothing was found for a seed, and what it takes for a further try.
+    fn fail(
+        &mut self,
+        (seed, scope): (Vertex, Vec<Vertex>),
+        task: &Task,
+        (needs, faces): (f64, usize),
+    ) {
+        let failed = Failed { round: self.round, season: self.season, scope, needs, faces };
+        self.failed.insert((task.stage, seed), failed);
     }
 
     fn plan(
@@ -259,7 +285,7 @@ impl Schedule {
         let left = mesh.total_irregularity() as usize;
         seeds
             .par_iter()
-            .with_max_len(8)
+            .with_max_len(1)
             .map(|&seed| {
                 if watch.cancelled() {
                     return Outcome::of(seed);
@@ -296,7 +322,7 @@ impl Schedule {
                 continue;
             }
             if !self.affordable(&proposal) {
-                self.fail(proposal.seed, task, scope, 0.0);
+                self.fail((proposal.seed, scope), task, AT_ANY_RATE);
                 continue;
             }
             let moved = proposal.moved.iter().map(|m| m.0);
@@ -304,14 +330,17 @@ impl Schedule {
             let (first_new, mark) = (mesh.vertex_ids(), mesh.mark());
             let ids = (mesh.vertex_ids(), mesh.quad_ids());
             proposal.edit = proposal.edit.rebased(planned, ids);
-            let Some(gain) = makes(mesh, &proposal) else { continue };
+            let Some(gain) = makes(mesh, &proposal) else {
+                self.fail((proposal.seed, scope), task, AT_ANY_RATE);
+                continue;
+            };
             let moved = proposal.moved_to(planned.0, first_new);
             let moved: Vec<_> = moved
                 .filter(|m| !(taken.contains(&m.0) && proposal.core.binary_search(&m.0).is_err()))
                 .collect();
             if !places(mesh, &proposal, &moved) {
                 mesh.undo_to(mark);
-                self.fail(proposal.seed, task, scope, 0.0);
+                self.fail((proposal.seed, scope), task, AT_ANY_RATE);
                 continue;
             }
             for &(v, _, triangle) in &moved {

@@ -4,7 +4,7 @@ use super::clusters::{Clusters, Limits};
 use super::contact::Contact;
 use super::cost::CostOptions;
 use super::edit::{Edit, walk_terms};
-use super::gate::{Failure, Gate, Passed, Rejected, Setting, Shape};
+use super::gate::{Failure, Gate, Passed, Price, Rejected, Setting, Shape};
 use super::global::Group;
 use super::movement::MovementGraph;
 use super::{PlanOptions, crossings, local};
@@ -28,7 +28,7 @@ pub struct Proposal {
     pub seed: Vertex,
     /// Irregular elements fewer.
     pub gain: u32,
-    /// Cost of the path, or 0.
+    /// Cost of the path; of a refill, that of its irregular faces.
     pub cost: f64,
     /// Growth of Σ |angle − ideal|, degrees.
     pub angle_growth: f64,
@@ -81,6 +81,8 @@ pub struct Outcome {
     pub failures: Vec<Failure>,
     /// The lowest exchange rate at which one of them might have passed.
     pub needs: f64,
+    /// Whether larger patches may have more to offer.
+    pub limited: bool,
     /// Refills among them: what is refilled how, and at which exchange rate it might have passed.
     pub hopeless: Vec<(RefillKey, f64)>,
     /// Vertices on which the outcome depends: without a change there it will be the same.
@@ -95,6 +97,7 @@ impl Outcome {
             proposal: None,
             failures: Vec::new(),
             needs: f64::INFINITY,
+            limited: false,
             hopeless: Vec::new(),
             scope: vec![seed],
         }
@@ -110,7 +113,7 @@ impl Outcome {
 pub type RefillKey = (u64, usize);
 
 /// What is looked for.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stage {
     /// Local reductions and walks.
     Moves,
@@ -118,27 +121,31 @@ pub enum Stage {
     Types,
     /// Operations at quads that are folded or nearly so, after which they are better.
     Poor,
-    /// Refills of patches of at most so many faces.
-    Refills {
-        /// Most faces.
-        faces: usize,
-    },
-    /// Refills of patches of at most so many faces, each around a group of the global plan.
-    Groups {
-        /// Most faces.
-        faces: usize,
-    },
-    /// Features resampled, with refills of at most so many faces on all their sides.
-    Crossings {
-        /// Most faces.
-        faces: usize,
-    },
+    /// Refills of patches.
+    Refills,
+    /// Refills of patches, each around a group of the global plan.
+    Groups,
+    /// Features resampled, with refills on all their sides.
+    Crossings,
     /// Refills that leave as many elements, at places that suit the surface better. The exchange
     /// rate is negative: what must be saved.
-    Relocations {
-        /// Most faces.
-        faces: usize,
-    },
+    Relocations,
+}
+
+impl Stage {
+    /// Whether what failed is not looked for again just because elements far away have moved: the
+    /// search takes longer than it is worth. Refills that failed are remembered one by one.
+    #[must_use]
+    pub fn is_remembered(self) -> bool {
+        matches!(self, Self::Moves | Self::Crossings)
+    }
+
+    /// Whether vertices of features slide while an edit is judged: small edits and those that
+    /// resample features need it; refills do as well against a rim that stands still.
+    #[must_use]
+    pub fn slides(self) -> bool {
+        matches!(self, Self::Moves | Self::Crossings)
+    }
 }
 
 /// All that a worker needs to know.
@@ -146,6 +153,8 @@ pub enum Stage {
 pub struct Task<'a> {
     /// What to look for.
     pub stage: Stage,
+    /// Most faces of a patch, or of all patches beside a feature.
+    pub faces: usize,
     /// The groups of the global plan, by the member that stands for each.
     pub groups: &'a BTreeMap<Vertex, Group>,
     /// Degrees of corner angle that an irregular element less may cost.
@@ -181,10 +190,11 @@ impl Size {
     }
 }
 
-/// How many of the vertices are faces that exist.
-fn count_faces(mesh: &QuadMesh, vertices: &[Vertex]) -> i64 {
-    let exists = |&&v: &&Vertex| v < mesh.vertex_ids() && mesh.is_alive(v);
-    vertices.iter().filter(exists).filter(|&&v| mesh.is_face(v)).count() as i64
+/// How many faces more there are since there were `ids` vertices of Q; all that has come or gone since
+/// is among `touched`.
+fn faces_added(mesh: &QuadMesh, touched: &[Vertex], ids: u32) -> i64 {
+    let change = |&v: &Vertex| i64::from(mesh.is_alive(v)) - i64::from(v < ids);
+    touched.iter().filter(|&&v| mesh.is_face(v)).map(change).sum()
 }
 
 /// A copy of the mesh, and the arrays that planning needs.
@@ -248,17 +258,12 @@ impl Worker {
             Stage::Moves => self.propose_move(seed, context, &mut outcome),
             Stage::Types => self.propose_type_change(seed, context, &mut outcome),
             Stage::Poor => self.propose_mending(seed, context, &mut outcome),
-            Stage::Refills { faces } => {
-                self.propose_refill((seed, faces, 1), context, &mut outcome);
-            }
-            Stage::Groups { faces } => self.propose_group((seed, faces), context, &mut outcome),
-            Stage::Crossings { faces } => {
-                self.propose_crossing((seed, faces), context, &mut outcome);
-            }
-            Stage::Relocations { faces } => {
-                self.propose_refill((seed, faces, 0), context, &mut outcome);
-            }
+            Stage::Refills => self.propose_refill((seed, 1), context, &mut outcome),
+            Stage::Groups => self.propose_group(seed, context, &mut outcome),
+            Stage::Crossings => self.propose_crossing(seed, context, &mut outcome),
+            Stage::Relocations => self.propose_refill((seed, 0), context, &mut outcome),
         }
+        outcome.limited = self.clusters.take_limited();
         outcome.scope.sort_unstable();
         outcome.scope.dedup();
         // Those of all seeds are kept, and most of it was said more than once.
@@ -281,7 +286,8 @@ impl Worker {
         candidates.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.total_cmp(&b.1)));
         for candidate in candidates.into_iter().take(task.plan.tries as usize) {
             let sweeps = task.gate.options.sweeps;
-            if let Ok(proposal) = self.attempt(seed, candidate, sweeps, context, outcome) {
+            let price = Price::of(candidate.0, task.lambda);
+            if let Ok(proposal) = self.attempt(seed, candidate, (sweeps, price), context, outcome) {
                 outcome.proposal = Some(proposal);
                 return;
             }
@@ -336,8 +342,10 @@ impl Worker {
             for (_, ops) in ways.into_iter().take(MOST_TYPE_CHANGES) {
                 let edit = Edit::TypeChange { ops };
                 let sweeps = context.task.gate.options.sweeps;
-                let found = self.attempt(seed, (0, 1.0, edit), sweeps, context, outcome).ok();
                 let best = outcome.proposal.as_ref().map_or(f64::INFINITY, |p| p.angle_growth);
+                let price = Price { most: best, ..Price::of(1, context.task.lambda) };
+                let candidate = (0, 1.0, edit);
+                let found = self.attempt(seed, candidate, (sweeps, price), context, outcome).ok();
                 outcome.proposal =
                     found.filter(|p| works(p) && p.angle_growth < best).or(outcome.proposal.take());
             }
@@ -391,38 +399,28 @@ impl Worker {
 
     fn propose_refill(
         &mut self,
-        (seed, faces, least_gain): (Vertex, usize, u32),
+        (seed, least_gain): (Vertex, u32),
         context: Context,
         outcome: &mut Outcome,
     ) {
         let partners = context.task.plan.partners as usize;
-        let limits = Limits { faces, partners, least_gain };
+        let limits = Limits { faces: context.task.faces, partners, least_gain };
         let regions = self.clusters.around(&self.mesh, seed, limits);
         self.refill_first((seed, least_gain), regions, context, outcome);
     }
 
     /// A refill around a group of the global plan.
-    fn propose_group(
-        &mut self,
-        (seed, faces): (Vertex, usize),
-        context: Context,
-        outcome: &mut Outcome,
-    ) {
+    fn propose_group(&mut self, seed: Vertex, context: Context, outcome: &mut Outcome) {
         let Some(group) = context.task.groups.get(&seed) else { return };
-        let limits = Limits { faces, partners: 0, least_gain: 1 };
+        let limits = Limits { faces: context.task.faces, partners: 0, least_gain: 1 };
         outcome.scope.extend(&group.ways);
         let region = self.clusters.joining(&self.mesh, &group.ways, limits);
         self.refill_first((seed, 1), region.into_iter().collect(), context, outcome);
     }
 
     /// The first crossing that passes.
-    fn propose_crossing(
-        &mut self,
-        (seed, faces): (Vertex, usize),
-        context: Context,
-        outcome: &mut Outcome,
-    ) {
-        let plan = context.task.plan;
+    fn propose_crossing(&mut self, seed: Vertex, context: Context, outcome: &mut Outcome) {
+        let (plan, faces) = (context.task.plan, context.task.faces);
         let (edges, partners) = (plan.crossings as usize, plan.partners as usize);
         let bounds = crossings::Bounds { edges, faces, partners, tries: plan.tries as usize };
         let tools = (&mut self.clusters, context.task.lines);
@@ -431,7 +429,8 @@ impl Worker {
             let faces: usize = crossing.refills.iter().map(|r| r.faces.len()).sum();
             let sweeps = context.task.gate.options.refill_sweeps + (faces as f64).sqrt() as u32;
             let candidate = (gain, 0.0, Edit::Crossing(crossing));
-            if let Ok(proposal) = self.attempt(seed, candidate, sweeps, context, outcome) {
+            let price = Price::of(gain, context.task.lambda);
+            if let Ok(proposal) = self.attempt(seed, candidate, (sweeps, price), context, outcome) {
                 outcome.proposal = Some(proposal);
                 return;
             }
@@ -457,7 +456,7 @@ impl Worker {
         }
     }
 
-    /// The filling of a region that passes with the least growth of angles.
+    /// The filling of a region that passes with the least growth of angles and cost of its types.
     fn best_filling(
         &mut self,
         (seed, least_gain): (Vertex, u32),
@@ -469,6 +468,8 @@ impl Worker {
         let sweeps = task.gate.options.refill_sweeps + (region.faces.len() as f64).sqrt() as u32;
         let (mut best, mut embedded): (Option<Proposal>, Option<OldPatch>) = (None, None);
         let set = region.key();
+        let is_irregular = |&&f: &&Vertex| self.mesh.valence(f) != 4;
+        let irregular_faces = region.faces.iter().filter(is_irregular).count();
         let all = fillings(region.rim.len(), &region.corners, task.plan.fillings as usize);
         for (number, filling) in all.into_iter().enumerate() {
             let key = (set, number);
@@ -488,15 +489,17 @@ impl Worker {
                 continue;
             }
             let gain = region.irregularity - after;
+            let turned = filling.irregular_faces() as f64 - irregular_faces as f64;
+            let extra = task.costs.face * turned;
             let patch = embedded.get_or_insert_with(|| OldPatch::new(&self.mesh, region));
             let Ok(refill) = Refill::of(&self.mesh, (region, patch), filling) else { continue };
             let edit = Edit::Refill(refill);
-            let found = self.attempt(seed, (gain, 0.0, edit), sweeps, context, outcome);
-            match found {
-                Ok(p) if best.as_ref().is_none_or(|b| p.angle_growth < b.angle_growth) => {
-                    best = Some(p);
-                }
-                Ok(_) => (),
+            let least = best.as_ref().map_or(f64::INFINITY, |b| b.angle_growth + b.cost);
+            let price = Price { extra, most: least - extra, ..Price::of(gain, task.lambda) };
+            match self.attempt(seed, (gain, extra, edit), (sweeps, price), context, outcome) {
+                Ok(p) if p.angle_growth + p.cost < least => best = Some(p),
+                // There may be room for it again later.
+                Ok(_) | Err(Some(Rejected { failure: Failure::Size, .. })) => (),
                 Err(rejected) => {
                     let needs = rejected.map_or(f64::INFINITY, |r| r.needs);
                     outcome.hopeless.push((key, needs));
@@ -512,25 +515,24 @@ impl Worker {
         &mut self,
         seed: Vertex,
         (gain, cost, edit): Candidate,
-        sweeps: u32,
+        (sweeps, price): (u32, Price),
         context: Context,
         outcome: &mut Outcome,
     ) -> Result<Proposal, Option<Rejected>> {
         let task = context.task;
-        let mark = self.mesh.mark();
+        let (mark, ids) = (self.mesh.mark(), self.mesh.vertex_ids());
         edit.run(&mut self.mesh).map_err(|_| None)?;
         let touched = self.mesh.touched_since(mark);
         let core = self.with_neighbours(&touched);
-        let faces_after = count_faces(&self.mesh, &touched);
-        let judged = self.gate.judge(
-            &mut self.mesh,
-            (mark, &touched),
-            (&task.gate, context.contact),
-            (sweeps, gain.max(1), task.lambda),
-        );
-        let faces_added = faces_after - count_faces(&self.mesh, &touched);
-        let in_size = context.size.allows(faces_added);
-        match judged.and_then(|passed| in_size.then_some(passed).ok_or(Failure::Size.into())) {
+        let faces_added = faces_added(&self.mesh, &touched, ids);
+        let judged = if context.size.allows(faces_added) {
+            let setting = (&task.gate, context.contact);
+            self.gate.judge(&mut self.mesh, (mark, &touched), setting, (sweeps, price))
+        } else {
+            self.mesh.undo_to(mark);
+            Err(Failure::Size.into())
+        };
+        match judged {
             Ok(Passed { angle_growth, shape, mended, distance_growth, moved }) => Ok(Proposal {
                 edit,
                 seed,
