@@ -33,7 +33,7 @@ VARIANTS = [
     ("the budget of angles", ["gate.angles=100"]),
     ("large patches (all at most 60 faces)", ["plan.patch_faces_last=60"]),
     ("all fillings of a patch but the first", ["plan.fillings=1"]),
-    ("stages (one, at the last exchange rate)", ["plan.stages=1", "plan.lambda_first=2000", "plan.patch_faces_first=2000"]),
+    ("stages (one, at the last exchange rate)", ["plan.stages=1", "plan.lambda_first=3500", "plan.patch_faces_first=2000"]),
     ("smoothing between stages", ["plan.smooth_between=0"]),
     ("relaxing before an edit is judged", ["gate.sweeps=1", "gate.refill_sweeps=1"]),
     ("cost of quads added or removed", ["cost.quads=0"]),
@@ -42,6 +42,8 @@ VARIANTS = [
     ("cost of edge lengths", ["cost.edge_length=0"]),
     ("cost of triple cancellations", ["cost.triple=0"]),
     ("nothing, and curvature costs 1", ["cost.curvature=1"]),
+    ("nothing, and a face costs 100 more than a vertex", ["cost.face=100"]),
+    ("nothing, and a face costs 100 less than a vertex", ["cost.face=-100"]),
 ]
 
 

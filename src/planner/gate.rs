@@ -33,7 +33,7 @@ knobs! {
         cover_edges: f64 = 1.0, in 0.0..=10.0, "mean edges";
         /// Hausdorff distance that edits and smoothing may cause, as a multiple of the input's. It is
         /// known from samples only: the part below 1 is for what falls between them.
-        hausdorff: f64 = 0.88, in 0.1..=100.0, "input Hausdorff distances";
+        hausdorff: f64 = 0.92, in 0.1..=100.0, "input Hausdorff distances";
         /// Root mean square distance of the reference to the mesh that all edits together may
         /// cause, as a multiple of the input's.
         rms: f64 = 1.2, in 0.0..=100.0, "input RMS distances";
