@@ -58,7 +58,8 @@ fn grow(mesh: &QuadMesh, grower: &mut Grower, dice: &mut Dice) -> Option<Region>
     for _ in 0..dice.below(4) {
         grower.add_ring(mesh);
     }
-    grower.convex(mesh, MOST_FACES).ok()
+    let outline = grower.convex(mesh, MOST_FACES).ok()?;
+    Some(grower.region(mesh, outline))
 }
 
 /// Refills `regions` random regions with each filling that fits, and keeps one filling of each.

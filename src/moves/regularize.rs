@@ -89,7 +89,8 @@ pub fn faces(mesh: &mut QuadMesh, faces: &[Vertex], most: usize) -> Result<Regul
         }
         grower.add_face(mesh, f);
     }
-    let region = grower.convex(mesh, most)?;
+    let outline = grower.convex(mesh, most)?;
+    let region = grower.region(mesh, outline);
     refill(mesh, &region)
 }
 
@@ -106,7 +107,7 @@ pub fn around(mesh: &mut QuadMesh, element: Vertex, most: usize) -> Result<Regul
     let mark = mesh.mark();
     loop {
         match grower.convex(mesh, most) {
-            Ok(region) => match refill(mesh, &region) {
+            Ok(outline) => match refill(mesh, &grower.region(mesh, outline)) {
                 Ok(done) => {
                     mesh.undo_to(mark);
                     let better = best.as_ref().is_none_or(|b| done.delta < b.delta);

@@ -15,6 +15,6 @@ pub mod template;
 
 pub use crossing::Crossing;
 pub use refill::Refill;
-pub use region::{Grower, Region};
+pub use region::{Grower, Outline, Region};
 pub use replay::Misfit;
 pub use template::{Filling, fillings};

@@ -59,7 +59,8 @@ impl Refill {
             }
             grower.add_face(mesh, f);
         }
-        let region = grower.disk(mesh).map_err(|_: Stop| Misfit::NotADisk)?;
+        let outline = grower.disk(mesh).map_err(|_: Stop| Misfit::NotADisk)?;
+        let region = grower.region(mesh, outline);
         let same = region.faces == self.faces
             && region.rim == self.rim
             && region.interior == self.interior

@@ -2,7 +2,7 @@
 
 use crate::mesh::NONE;
 use crate::patch::region::Stop;
-use crate::patch::{Grower, Region};
+use crate::patch::{Grower, Outline, Region};
 use crate::sqrtcc::{HalfEdge, QuadKind, QuadMesh, Vertex};
 
 /// How far and how large the search for regions goes.
@@ -15,6 +15,9 @@ pub struct Limits {
     /// How many elements fewer a region must be able to have.
     pub least_gain: u32,
 }
+
+/// What came of growing a region.
+type Grown = Result<Outline, Stop>;
 
 /// Vertices and faces around a seed among which feature edges are looked for.
 const NEARBY: usize = 200;
@@ -63,8 +66,8 @@ impl Clusters {
         for &v in joined {
             self.grower.add(mesh, v);
         }
-        let region = self.grower.convex(mesh, limits.faces).ok()?;
-        can_gain(&region, limits.least_gain).then_some(region)
+        let outline = self.grower.convex(mesh, limits.faces).ok()?;
+        can_gain(&outline, limits.least_gain).then(|| self.grower.region(mesh, outline))
     }
 
     /// Convex disks beside the origin of `at`, a vertex of a feature, on the side of `at`, small to
@@ -90,9 +93,9 @@ impl Clusters {
         for &f in faces {
             self.grower.add_face(mesh, f);
         }
-        let region = self.grower.convex(mesh, most);
-        self.limited |= is_too_large(&region);
-        region.ok()
+        let outline = self.grower.convex(mesh, most);
+        self.limited |= is_too_large(&outline);
+        Some(self.grower.region(mesh, outline.ok()?))
     }
 
     /// The feature edges nearest to `seed` by steps that cross none, each as the half-edge from an
@@ -137,36 +140,33 @@ impl Clusters {
         regions: &mut Vec<Region>,
     ) {
         let most = limits.faces;
-        let keep = |region: Result<Region, Stop>, regions: &mut Vec<Region>| {
-            let Ok(region) = region else { return };
-            let known = regions
-                .iter()
-                .any(|r| r.rim.len() == region.rim.len() && r.faces.len() == region.faces.len());
-            if !known && can_gain(&region, limits.least_gain) {
-                regions.push(region);
+        let keep = |grower: &mut Grower, grown: Grown, regions: &mut Vec<Region>| {
+            let Ok(outline) = grown else { return };
+            let mut sizes = regions.iter().map(|r| (r.rim.len(), r.faces.len()));
+            let known = sizes.any(|sizes| sizes == (outline.rim, outline.faces));
+            if !known && can_gain(&outline, limits.least_gain) {
+                regions.push(grower.region(mesh, outline));
             }
         };
-        let alone = grow(&mut self.grower, mesh, (at, &self.parent), &[], most);
+        let alone = grow(&mut self.joint, mesh, (at, &self.parent), None, most);
         // A convex disk around more is no smaller: what is too large will not fit any more.
         if is_too_large(&alone) {
             self.limited = true;
             return;
         }
-        keep(alone, regions);
+        keep(&mut self.joint, alone, regions);
         let partners = self.nearest(mesh, at, limits);
-        let (mut fits, mut is_convex) = (true, false);
-        for i in 0..partners.len() {
+        let mut fits = true;
+        for (i, &partner) in partners.iter().enumerate() {
             let ways = (at, &self.parent[..]);
-            let single = grow(&mut self.grower, mesh, ways, &partners[i..=i], most);
+            let single = grow(&mut self.grower, mesh, ways, Some(partner), most);
             fits &= !is_too_large(&single);
-            keep(single, regions);
-            // A disk that holds the next way already is the same with it.
-            let same = i == 0 || is_convex && !add_way(&mut self.joint, mesh, ways, partners[i]);
-            if fits && !same {
-                let together = grow(&mut self.joint, mesh, ways, &partners[..=i], most);
+            keep(&mut self.grower, single, regions);
+            // A disk that holds the next way already is the same with it; so is the first single.
+            if fits && add_way(&mut self.joint, mesh, ways, partner) && i > 0 {
+                let together = self.joint.convex(mesh, most);
                 fits = !is_too_large(&together);
-                is_convex = together.is_ok();
-                keep(together, regions);
+                keep(&mut self.joint, together, regions);
             }
         }
         self.limited |= !fits;
@@ -205,14 +205,14 @@ impl Clusters {
     }
 }
 
-/// The convex disk around the origin of `start`, on its side, and the ways to the partners.
+/// The convex disk around the origin of `start`, on its side, and the way to a partner.
 fn grow(
     grower: &mut Grower,
     mesh: &QuadMesh,
     (start, parent): (HalfEdge, &[Vertex]),
-    partners: &[Vertex],
+    partner: Option<Vertex>,
     most: usize,
-) -> Result<Region, Stop> {
+) -> Grown {
     grower.start(mesh);
     let seed = mesh.origin(start);
     if mesh.is_face(seed) {
@@ -220,7 +220,7 @@ fn grow(
     } else {
         grower.add_sector(mesh, start);
     }
-    for &partner in partners {
+    if let Some(partner) = partner {
         add_way(grower, mesh, (start, parent), partner);
     }
     grower.convex(mesh, most)
@@ -253,19 +253,21 @@ fn smallest_first(mut regions: Vec<Region>) -> Vec<Region> {
     regions
 }
 
-fn is_too_large(region: &Result<Region, Stop>) -> bool {
-    matches!(region, Err(Stop::TooLarge))
+fn is_too_large(grown: &Grown) -> bool {
+    matches!(grown, Err(Stop::TooLarge))
 }
 
-fn can_gain(region: &Region, least: u32) -> bool {
-    least_after(region) + least <= region.irregularity
+fn can_gain(outline: &Outline, least: u32) -> bool {
+    let after = least_after(outline.corners, outline.rim_irregularity_after);
+    after + least <= outline.irregularity
 }
 
-/// The least irregularity that a filling of the region can have, by its number of corners.
-pub(super) fn least_after(region: &Region) -> u32 {
-    let inside = match region.corners.len() {
+/// The least irregularity that a filling of a region can have, by its number of corners and what its
+/// rim will have.
+pub(super) fn least_after(corners: usize, rim_irregularity_after: u32) -> u32 {
+    let inside = match corners {
         k @ 2..=6 => k.abs_diff(4) as u32,
         _ => return u32::MAX / 2,
     };
-    inside + region.rim_irregularity_after
+    inside + rim_irregularity_after
 }

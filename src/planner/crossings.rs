@@ -173,7 +173,8 @@ fn crossing(
         return None;
     }
     let far = clusters.beside(mesh, sides.last()?.1, limits);
-    let hope = |region: &Region| region.irregularity as i32 - least_after(region) as i32;
+    let after = |r: &Region| least_after(r.corners.len(), r.rim_irregularity_after);
+    let hope = |region: &Region| region.irregularity as i32 - after(region) as i32;
     let faces = |&(i, k): &(usize, usize)| near[i].faces.len() + far[k].faces.len();
     let all = (0..near.len()).flat_map(|i| (0..far.len()).map(move |k| (i, k)));
     let pays = |&(i, k): &(usize, usize)| hope(&near[i]) + hope(&far[k]) > rise;

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 impl QuadMesh {
     /// How many faces (or edges, for a d-vertex) there are too many around `origin(h)` in the
     /// sector that contains `h`; negative if too few. Opposite in sign to the paper's index.
+    #[inline]
     #[must_use]
     pub fn excess(&self, h: HalfEdge) -> i32 {
         let v = self.origin(h);
@@ -24,6 +25,7 @@ impl QuadMesh {
     }
 
     /// Irregularity of `v`: |valence − 4|, summed over sectors at features and boundaries.
+    #[inline]
     #[must_use]
     pub fn irregularity(&self, v: Vertex) -> u32 {
         if self.is_ghost(v) {
