@@ -207,8 +207,8 @@ struct Hope {
 /// on Spot, Blub and the bunny, and 0.5 % for their quads on Spot, the goat head, the penguin and the
 /// feature type; of those that do not pass for their quads, three in four before the relaxing.
 const HOPES: [Hope; 7] = [
-    Hope { times: 7.0, share: 0.3, lack: 1.2 },
-    Hope { times: 3.4, share: 0.15, lack: 0.3 },
+    Hope { times: 7.0, share: 0.3, lack: 1.6 },
+    Hope { times: 3.4, share: 0.15, lack: 0.4 },
     Hope { times: 2.2, share: 0.08, lack: 0.1 },
     Hope { times: 1.7, share: 0.05, lack: 0.07 },
     Hope { times: 1.35, share: 0.03, lack: 0.05 },
