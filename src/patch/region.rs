@@ -53,10 +53,10 @@ pub struct Outline {
 /// Grows regions; keeps its arrays from one to the next.
 #[derive(Debug, Clone, Default)]
 pub struct Grower {
-    /// The region that a face was last taken into.
+    /// The region that a face was last taken into, or that a vertex was last met in.
     stamp: Vec<u32>,
-    /// The region in which faces at a vertex were last counted, and how many there are.
-    inside: Vec<(u32, u32)>,
+    /// How many faces at a vertex of the region are inside; no more than this type holds.
+    inside: Vec<u16>,
     epoch: u32,
     faces: Vec<Vertex>,
     tally: Tally,
@@ -103,7 +103,7 @@ impl Grower {
     /// Begins a new region.
     pub fn start(&mut self, mesh: &QuadMesh) {
         self.stamp.resize(mesh.vertex_ids() as usize, 0);
-        self.inside.resize(mesh.vertex_ids() as usize, (0, 0));
+        self.inside.resize(mesh.vertex_ids() as usize, 0);
         self.met.resize(mesh.vertex_ids() as usize, 0);
         self.epoch += 1;
         self.faces.clear();
@@ -117,8 +117,9 @@ impl Grower {
         self.faces.len()
     }
 
-    fn holds(&self, face: Vertex) -> bool {
-        self.stamp[face as usize] == self.epoch
+    /// Whether a face, or a vertex of a face, has been taken in.
+    fn holds(&self, v: Vertex) -> bool {
+        self.stamp[v as usize] == self.epoch
     }
 
     /// Takes in a face; ghosts stay outside.
@@ -137,11 +138,11 @@ impl Grower {
                 self.tally.rim -= 1;
             }
             let v = mesh.target(h);
-            let (epoch, count) = &mut self.inside[v as usize];
-            let is_new = *epoch != self.epoch;
-            *count = if is_new { 1 } else { *count + 1 };
-            *epoch = self.epoch;
-            if mesh.is_held(v) || *count + 1 == mesh.valence(v) {
+            let is_new = !self.holds(v);
+            self.stamp[v as usize] = self.epoch;
+            let count = &mut self.inside[v as usize];
+            *count = if is_new { 1 } else { count.saturating_add(1) };
+            if mesh.is_held(v) || u32::from(*count) + 1 == mesh.valence(v) {
                 self.dents.push(mesh.twin(h));
             }
             if is_new {
@@ -200,7 +201,7 @@ impl Grower {
     fn is_dent(&self, mesh: &QuadMesh, out: HalfEdge) -> bool {
         let v = mesh.origin(out);
         if !mesh.is_held(v) {
-            return self.inside[v as usize].1 + 1 == mesh.valence(v);
+            return u32::from(self.inside[v as usize]) + 1 == mesh.valence(v);
         }
         // Only the sector of the region counts.
         let (mut all, mut outside) = (0, 0);
