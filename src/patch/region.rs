@@ -330,7 +330,9 @@ mod tests {
     }
 
     fn grown(mesh: &QuadMesh, grower: &mut Grower, faces: &[Vertex]) -> Result<Region, Stop> {
-        faces.iter().for_each(|&f| grower.add_face(mesh, f));
+        for &f in faces {
+            grower.add_face(mesh, f);
+        }
         let outline = grower.convex(mesh, usize::MAX)?;
         let region = grower.region(mesh, outline);
         assert_eq!(outline.faces, region.faces.len());
