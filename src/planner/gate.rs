@@ -6,7 +6,7 @@
 
 use super::contact::Contact;
 use super::cover::{Cover, fan_distance, gauges};
-use super::lines::beside;
+use super::lines::{beside, sagitta};
 use crate::knobs::knobs;
 use crate::mesh::{Point, Vector};
 use crate::smooth::{Orientation, Region as Patch, RelaxOptions, fit_local, relax_local};
@@ -389,13 +389,8 @@ impl Gate {
     /// How far the middle of an edge beside a vertex that slides is from the crease, at most.
     fn bend(&self, lines: &SharpLines) -> f64 {
         let edges = self.patch.rails().flat_map(|(v, ends)| ends.map(|end| [v, end]));
-        let bends = edges.map(|edge| {
-            let [a, b] = edge.map(|v| self.patch.point(v));
-            let middle = nalgebra::center(&a, &b);
-            let on = lines.closest(&middle, (b - a).norm());
-            on.map_or(f64::INFINITY, |on| (on - middle).norm())
-        });
-        bends.fold(0.0, f64::max)
+        let points = edges.map(|edge| edge.map(|v| self.patch.point(v)));
+        points.map(|[from, to]| sagitta(lines, &from, &to)).fold(0.0, f64::max)
     }
 
     /// The shape of the relaxed region.
@@ -452,23 +447,27 @@ impl Gate {
     }
 
     /// Whether all probes of the region are near enough to the mesh now.
-    fn is_covered(&mut self, touched: &[Vertex], on: (&Setting, &Contact)) -> bool {
-        self.all_probes(touched, on, |cover, (own, probe, before)| {
-            let most = on.0.cover.max(before).powi(2);
+    fn is_covered(&mut self, touched: &[Vertex], (setting, contact): (&Setting, &Contact)) -> bool {
+        self.all_probes(touched, contact, |cover, (own, probe, before)| {
+            let most = setting.cover.max(before).powi(2);
             own <= most || cover.nearest(&probe, own).is_some_and(|n| n.0 <= most)
         })
     }
 
     /// How much Σ squared distance grows over the probes of the region; `None` if one of them is
     /// too far from the mesh now.
-    fn distance_growth(&mut self, touched: &[Vertex], on: (&Setting, &Contact)) -> Option<f64> {
+    fn distance_growth(
+        &mut self,
+        touched: &[Vertex],
+        (setting, contact): (&Setting, &Contact),
+    ) -> Option<f64> {
         let mut growth = 0.0;
-        let near = self.all_probes(touched, on, |cover, (own, probe, before)| {
+        let near = self.all_probes(touched, contact, |cover, (own, probe, before)| {
             let farther = own > before * before;
             let nearest = if farther { cover.nearest(&probe, own) } else { None };
             let squared = nearest.map_or(own, |n| n.0);
             growth += squared - before * before;
-            squared <= on.0.cover.max(before).powi(2)
+            squared <= setting.cover.max(before).powi(2)
         });
         near.then_some(growth)
     }
@@ -478,7 +477,7 @@ impl Gate {
     fn all_probes(
         &mut self,
         touched: &[Vertex],
-        (_, contact): (&Setting, &Contact),
+        contact: &Contact,
         mut wanted: impl FnMut(&Cover, (f64, Point, f64)) -> bool,
     ) -> bool {
         let patch = &self.patch;

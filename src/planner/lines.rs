@@ -61,6 +61,14 @@ pub fn relax(mesh: &mut QuadMesh, rails: Rails, sweeps: u32) {
     }
 }
 
+/// How far the middle of a chord is from the crease that it stands for; infinite if that is farther
+/// than it is long.
+pub(super) fn sagitta(lines: &SharpLines, from: &Point, to: &Point) -> f64 {
+    let middle = nalgebra::center(from, to);
+    let near = lines.closest(&middle, (to - from).norm());
+    near.map_or(f64::INFINITY, |on| (on - middle).norm())
+}
+
 impl Rails<'_> {
     /// Puts free vertices that are at most `reach` from a crease onto it and pins them, the nearest
     /// first, where faces stay about as good: those. O(vertices · log n).
@@ -107,14 +115,8 @@ impl Rails<'_> {
             return false;
         }
         let [before, after] = ends.map(|w| mesh.position(w));
-        let bend = |at: &Point| {
-            let off = |end: &Point| {
-                let middle = nalgebra::center(at, end);
-                let near = self.lines.closest(&middle, (end - at).norm());
-                near.map_or(f64::INFINITY, |on| (on - middle).norm())
-            };
-            off(&before).max(off(&after))
-        };
+        let bend =
+            |at: &Point| sagitta(self.lines, at, &before).max(sagitta(self.lines, at, &after));
         let most = bend(&at).max(self.tolerance);
         let faces: SmallVec<[Vertex; 8]> =
             mesh.neighbours(v).filter(|&f| !mesh.is_ghost(f)).collect();

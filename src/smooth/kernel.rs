@@ -354,20 +354,26 @@ impl Kernel {
         sum
     }
 
-    /// Moves vertex `v`; its squared move in squared edges.
-    fn step_vertex(&self, on: &Pass, v: usize, vertex: &mut Vertex, lead: &mut Point) -> f64 {
-        let star = self.star(v);
+    /// Where its faces want vertex `v`: the sum of their targets times their weights, and of those.
+    #[inline]
+    fn wish(&self, v: usize) -> (Vector, f64) {
         let (mut sum, mut weight) = (Vector::zeros(), 0.0);
-        for &c in star {
+        for &c in self.star(v) {
             let t = &self.targets[c as usize];
             sum += Vector::from(t.sum);
             weight += t.weight;
         }
+        (sum, weight)
+    }
+
+    /// Moves vertex `v`; its squared move in squared edges.
+    fn step_vertex(&self, on: &Pass, v: usize, vertex: &mut Vertex, lead: &mut Point) -> f64 {
+        let (mut sum, mut weight) = self.wish(v);
         if weight <= 0.0 {
             return 0.0;
         }
         // Weights are about 1/r² and a square of half-diagonal r has edges of √2 r.
-        let edge2 = 2.0 * star.len() as f64 / weight;
+        let edge2 = 2.0 * self.star(v).len() as f64 / weight;
         if let Some(pull) = self.pulls.get(v).filter(|p| p.weight > 0.0) {
             sum += Vector::from(pull.sum) * weight;
             weight *= 1.0 + pull.weight;
@@ -393,10 +399,7 @@ impl Kernel {
     fn glide(&mut self, lines: &SharpLines) {
         for i in 0..self.rails.len() {
             let Rail { vertex, ends } = self.rails[i];
-            let targets = self.star(vertex as usize).iter().map(|&c| &self.targets[c as usize]);
-            let (sum, weight) = targets.fold((Vector::zeros(), 0.0), |(sum, weight), t| {
-                (sum + Vector::from(t.sum), weight + t.weight)
-            });
+            let (sum, weight) = self.wish(vertex as usize);
             let at = self.vertices[vertex as usize].point;
             let [before, after] = ends.map(|v| self.vertices[v as usize].point);
             let Some(along) = (after - before).try_normalize(0.0).filter(|_| weight > 0.0) else {
