@@ -16,7 +16,7 @@
 //! four corners around the two can be regular exactly if opposite sides are equally long.
 //! Source: Peng & Wonka 2013, Proposition 3.7, Figure 6.
 
-use super::element::{Element, Kind, is_on_line};
+use super::element::{Element, Kind};
 use super::path::Offset;
 use super::walk::{Blocked, Compass, Walk, on_some_path};
 use super::{Dipole, MoveRefusal, Path, Route};
@@ -118,7 +118,7 @@ fn stands(mesh: &QuadMesh, dipole: Dipole) -> Result<(), MoveRefusal> {
         return Err(MoveRefusal::NotADislocation);
     }
     let held = [mesh.origin(dipole.0), mesh.target(dipole.0)];
-    held.into_iter().find(|&v| is_on_line(mesh, v)).map_or(Ok(()), |v| Err(MoveRefusal::Held(v)))
+    held.into_iter().find(|&v| mesh.is_on_line(v)).map_or(Ok(()), |v| Err(MoveRefusal::Held(v)))
 }
 
 /// The outcome of two dislocations at the ends of a path.

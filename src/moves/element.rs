@@ -80,7 +80,7 @@ impl Element {
         if v >= mesh.vertex_ids() || !mesh.is_alive(v) || mesh.is_ghost(v) {
             return Err(MoveRefusal::Gone(v));
         }
-        if is_on_line(mesh, v) {
+        if mesh.is_on_line(v) {
             return Err(MoveRefusal::Held(v));
         }
         let kind = match (mesh.valence(v), mesh.is_face(v)) {
@@ -97,10 +97,4 @@ impl Element {
     pub fn all(mesh: &QuadMesh) -> impl Iterator<Item = Self> + '_ {
         mesh.vertices().filter_map(|v| Self::at(mesh, v).ok())
     }
-}
-
-/// Whether `v` lies on a boundary or feature, where sectors count and not the valence. A pin keeps
-/// its place alone: its valence may be moved away from it.
-pub(crate) fn is_on_line(mesh: &QuadMesh, v: Vertex) -> bool {
-    mesh.is_held(v) && !mesh.is_pin(v)
 }

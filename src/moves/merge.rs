@@ -9,7 +9,7 @@
 //! merged element must be: a vertex or face only if the two have the same type and the same index.
 //! Source: Peng & Wonka 2013, Proposition 3.5.
 
-use super::element::{Element, is_on_line};
+use super::element::Element;
 use super::pair::{self, Direction};
 use super::path::REACH;
 use super::{MoveRefusal, Route, basic};
@@ -102,7 +102,7 @@ pub fn split_element(
     if v >= mesh.vertex_ids() || !mesh.is_alive(v) {
         return Err(MoveRefusal::Gone(v));
     }
-    if mesh.valence(v) != 6 || is_on_line(mesh, v) {
+    if mesh.valence(v) != 6 || mesh.is_on_line(v) {
         return Err(MoveRefusal::NotIrregular(v));
     }
     let mut refused = MoveRefusal::NotJoined(v, through.unwrap_or(v));

@@ -10,7 +10,6 @@
 //! *Invariant:* the vertices between the ends are regular and free, so the turns are quarters.
 
 use super::MoveRefusal;
-use super::element::is_on_line;
 use crate::sqrtcc::{HalfEdge, QuadMesh, Vertex};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::VecDeque;
@@ -195,7 +194,7 @@ impl Path {
                 reached.insert(next, h);
                 if is_regular(mesh, next) {
                     queue.push_back((next, length + 1));
-                } else if !mesh.is_held(next) || mesh.is_pin(next) {
+                } else if !mesh.is_on_line(next) {
                     ends.push(next);
                 }
             }
@@ -245,7 +244,7 @@ pub(crate) fn quarters(mesh: &QuadMesh, from: HalfEdge, to: HalfEdge) -> i32 {
 /// Whether a path may lead through `v`: four edges, and nothing holds it.
 fn is_regular(mesh: &QuadMesh, v: Vertex) -> bool {
     let known = v < mesh.vertex_ids() && mesh.is_alive(v);
-    known && mesh.valence(v) == 4 && !is_on_line(mesh, v) && !mesh.is_ghost(v)
+    known && mesh.valence(v) == 4 && !mesh.is_on_line(v) && !mesh.is_ghost(v)
 }
 
 /// Breadth first from `from` to `to`.

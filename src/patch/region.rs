@@ -147,7 +147,7 @@ impl Grower {
             }
             if is_new {
                 self.tally.vertices += 1;
-                if mesh.is_held(v) && !mesh.is_pin(v) {
+                if mesh.is_on_line(v) {
                     self.tally.held += 1;
                 } else {
                     self.tally.irregularity += mesh.irregularity(v);
@@ -160,7 +160,7 @@ impl Grower {
     pub fn add(&mut self, mesh: &QuadMesh, v: Vertex) {
         if mesh.is_face(v) {
             self.add_face(mesh, v);
-        } else if !mesh.is_held(v) || mesh.is_pin(v) {
+        } else if !mesh.is_on_line(v) {
             mesh.neighbours(v).for_each(|f| self.add_face(mesh, f));
         }
     }
@@ -225,7 +225,7 @@ impl Grower {
                 self.corners.push(i);
             }
             rim_irregularity_after += (wanted.clamp(1, 2) - wanted).unsigned_abs();
-            if mesh.is_held(v) && !mesh.is_pin(v) {
+            if mesh.is_on_line(v) {
                 held += 1;
                 irregularity += excess.unsigned_abs();
             }
@@ -285,9 +285,12 @@ impl Grower {
                 break;
             }
         }
+        if self.rim.len() < self.tally.rim {
+            return Err(Stop::NotADisk);
+        }
         let least = (0..self.rim.len()).min_by_key(|&i| self.rim[i].0).unwrap_or(0);
         self.rim.rotate_left(least);
-        if self.rim.len() == self.tally.rim { Ok(()) } else { Err(Stop::NotADisk) }
+        Ok(())
     }
 
     /// The rim edge after `h`, and how many faces are inside where they meet.

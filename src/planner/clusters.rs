@@ -45,7 +45,7 @@ impl Clusters {
     /// can fall are given. O(faces · regions).
     pub fn around(&mut self, mesh: &QuadMesh, seed: Vertex, limits: Limits) -> Vec<Region> {
         let mut regions: Vec<Region> = Vec::new();
-        if mesh.is_held(seed) && !mesh.is_pin(seed) {
+        if mesh.is_on_line(seed) {
             for sector in mesh.sectors(seed).filter(|&h| mesh.excess(h) != 0) {
                 self.around_sector(mesh, sector, limits, &mut regions);
             }
@@ -102,7 +102,7 @@ impl Clusters {
     /// end to the face on the side of the seed.
     pub fn feature_edges(&mut self, mesh: &QuadMesh, seed: Vertex, most: usize) -> Vec<HalfEdge> {
         self.parent.resize(mesh.vertex_ids() as usize, NONE);
-        if mesh.is_held(seed) && !mesh.is_pin(seed) {
+        if mesh.is_on_line(seed) {
             for sector in mesh.sectors(seed).filter(|&h| mesh.excess(h) != 0) {
                 mesh.sector(sector).for_each(|h| self.visit(mesh, mesh.target(h), seed));
             }
@@ -117,7 +117,7 @@ impl Clusters {
                 let lines = |&h: &HalfEdge| mesh.kind(QuadMesh::quad(h)) == QuadKind::Feature;
                 found.extend(mesh.outgoing(v).filter(lines).map(QuadMesh::prev));
             }
-            if !mesh.is_held(v) || mesh.is_pin(v) {
+            if !mesh.is_on_line(v) {
                 mesh.neighbours(v).for_each(|w| self.visit(mesh, w, v));
             }
         }
@@ -190,7 +190,7 @@ impl Clusters {
             }
             if v == seed {
                 mesh.sector(at).for_each(|h| self.visit(mesh, mesh.target(h), v));
-            } else if !mesh.is_held(v) || mesh.is_pin(v) {
+            } else if !mesh.is_on_line(v) {
                 mesh.neighbours(v).for_each(|w| self.visit(mesh, w, v));
             }
         }

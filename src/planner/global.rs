@@ -61,7 +61,7 @@ pub fn groups(mesh: &QuadMesh, reach: usize, tried: &BTreeSet<Link>) -> Vec<Grou
 
 impl Roads {
     fn new(mesh: &QuadMesh, reach: usize) -> Self {
-        let free = |&v: &Vertex| !mesh.is_held(v) || mesh.is_pin(v);
+        let free = |&v: &Vertex| !mesh.is_on_line(v);
         let elements: Vec<Vertex> =
             mesh.vertices().filter(|&v| mesh.irregularity(v) > 0).filter(free).collect();
         let number: FxHashMap<Vertex, usize> =

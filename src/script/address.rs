@@ -8,7 +8,6 @@ use super::error::Trouble;
 use super::session::Session;
 use crate::mesh::Point;
 use crate::moves::basic::edge_between;
-use crate::moves::element::is_on_line;
 use crate::moves::{Dipole, Element, Kind};
 use crate::sqrtcc::{HalfEdge, QuadMesh, Vertex};
 use serde::Deserialize;
@@ -51,7 +50,7 @@ impl Select {
             return false;
         }
         let kind = |wanted| Element::at(mesh, v).is_ok_and(|element| element.kind == wanted);
-        let free = !is_on_line(mesh, v);
+        let free = !mesh.is_on_line(v);
         match self {
             Self::Vertices => !mesh.is_face(v),
             Self::Faces => mesh.is_face(v),
@@ -89,7 +88,7 @@ impl Select {
 
 /// The dislocation whose edge too few is at `v`.
 pub(super) fn dislocation(mesh: &QuadMesh, v: Vertex) -> Option<Dipole> {
-    let free = |d: &Dipole| !is_on_line(mesh, mesh.target(d.0));
+    let free = |d: &Dipole| !mesh.is_on_line(mesh.target(d.0));
     mesh.outgoing(v)
         .map(Dipole)
         .filter(|d| d.stands(mesh) && free(d))

@@ -182,6 +182,14 @@ impl QuadMesh {
         self.class[v as usize] & (HELD | PIN) != 0
     }
 
+    /// Whether `v` lies on a boundary or feature, where sectors count and not the valence. A pin keeps
+    /// its place alone: its valence may be moved away from it.
+    #[inline]
+    #[must_use]
+    pub fn is_on_line(&self, v: Vertex) -> bool {
+        self.class[v as usize] & HELD != 0
+    }
+
     /// Whether `v` is held by itself alone, see [`Self::pin`].
     #[inline]
     #[must_use]

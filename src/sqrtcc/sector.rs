@@ -31,7 +31,7 @@ impl QuadMesh {
         if self.is_ghost(v) {
             return 0;
         }
-        if !self.is_held(v) || self.is_pin(v) {
+        if !self.is_on_line(v) {
             return self.valence(v).abs_diff(4);
         }
         self.sectors(v).map(|h| self.excess(h).unsigned_abs()).sum()

@@ -25,7 +25,7 @@ pub enum Kind {
 impl Kind {
     /// Whether `v` is an element of this kind that a conversion may change.
     pub(super) fn covers(self, mesh: &QuadMesh, v: Vertex) -> bool {
-        let is_free = !mesh.is_held(v) || mesh.is_pin(v);
+        let is_free = !mesh.is_on_line(v);
         mesh.is_face(v) == (self == Self::Faces) && !mesh.is_ghost(v) && is_free
     }
 
