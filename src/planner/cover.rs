@@ -16,6 +16,8 @@ pub(super) struct Cover {
     ends: Vec<u32>,
     balls: Vec<Ball>,
     groups: Vec<Ball>,
+    /// The face that was found last: the next query is mostly near the one before.
+    last: usize,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -38,6 +40,7 @@ impl Cover {
         self.corners.clear();
         self.ends.clear();
         self.balls.clear();
+        self.last = 0;
         for face in faces {
             let first = self.corners.len();
             self.corners.extend(face);
@@ -64,25 +67,45 @@ impl Cover {
 
     /// The squared distance from `at` to the closest face, and the number of the first that is so
     /// close, if that is less than `least`.
-    pub(super) fn nearest(&self, at: &Point, least: f64) -> Option<(f64, usize)> {
-        let farthest = |g: &Ball| (at - g.middle).norm() + g.radius;
-        let mut reach = MARGIN * self.groups.iter().map(farthest).fold(least.sqrt(), f64::min);
+    pub(super) fn nearest(&mut self, at: &Point, least: f64) -> Option<(f64, usize)> {
+        self.search(at, (least, f64::NEG_INFINITY))
+    }
+
+    /// Whether the squared distance from `at` to some face is at most `most`.
+    pub(super) fn is_within(&mut self, at: &Point, most: f64) -> bool {
+        self.search(at, (most.next_up(), most)).is_some()
+    }
+
+    /// The closest face if it is closer than `least`, or one that is close `enough`.
+    fn search(&mut self, at: &Point, (least, enough): (f64, f64)) -> Option<(f64, usize)> {
         let (mut least, mut nearest) = (least, None);
+        let guess = self.last;
+        if guess < self.balls.len() {
+            let squared = fan_distance(self.corners(guess), at);
+            if squared < least {
+                (least, nearest) = (squared, Some((squared, guess)));
+            }
+        }
+        let mut reach = MARGIN * least.sqrt();
         for (k, group) in self.groups.iter().enumerate() {
+            if least <= enough {
+                break;
+            }
             if group.is_beyond(at, reach) {
                 continue;
             }
             for i in k * GROUP..self.balls.len().min((k + 1) * GROUP) {
-                if self.balls[i].is_beyond(at, reach) {
+                if i == guess || self.balls[i].is_beyond(at, reach) {
                     continue;
                 }
                 let squared = fan_distance(self.corners(i), at);
-                if squared < least {
+                if (squared, i) < nearest.unwrap_or((least, 0)) {
                     (least, nearest) = (squared, Some((squared, i)));
-                    reach = reach.min(MARGIN * squared.sqrt());
+                    reach = MARGIN * squared.sqrt();
                 }
             }
         }
+        self.last = nearest.map_or(guess, |n| n.1);
         nearest
     }
 }
@@ -145,6 +168,7 @@ mod tests {
                     }
                 }
                 prop_assert_eq!(cover.nearest(&at, least), brute);
+                prop_assert_eq!(cover.is_within(&at, least), brute.is_some());
             }
         }
     }

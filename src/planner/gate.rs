@@ -450,7 +450,7 @@ impl Gate {
     fn is_covered(&mut self, touched: &[Vertex], (setting, contact): (&Setting, &Contact)) -> bool {
         self.all_probes(touched, contact, |cover, (own, probe, before)| {
             let most = setting.cover.max(before).powi(2);
-            own <= most || cover.nearest(&probe, own).is_some_and(|n| n.0 <= most)
+            own <= most || cover.is_within(&probe, most)
         })
     }
 
@@ -478,12 +478,12 @@ impl Gate {
         &mut self,
         touched: &[Vertex],
         contact: &Contact,
-        mut wanted: impl FnMut(&Cover, (f64, Point, f64)) -> bool,
+        mut wanted: impl FnMut(&mut Cover, (f64, Point, f64)) -> bool,
     ) -> bool {
         let patch = &self.patch;
         let corners = |i| patch.face(i).iter().map(|&v| patch.point(v));
         self.cover.fill((0..self.faces.len()).map(corners));
-        let cover = &self.cover;
+        let cover = &mut self.cover;
         let gone = touched.iter().filter(|&&v| self.stamp.get(v as usize) != Some(&self.epoch));
         let mut own = self.faces.iter().zip((0..).map(Some)).chain(gone.map(|f| (f, None)));
         own.all(|(&f, own)| {
