@@ -14,6 +14,8 @@
 //! ```
 
 use serde::{Deserialize, Serialize};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 /// A polygonal disk: rim vertices 0…n−1 in order, then new ones.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -124,16 +126,24 @@ pub fn fillings(n: usize, corners: &[usize], most: usize) -> Vec<Filling> {
     }
 }
 
+/// Spokes of three or five.
+type Spokes = smallvec::SmallVec<[u32; 5]>;
+
 /// Twice the spoke lengths; `None` unless all are positive.
-fn double_spokes(sides: &[u32]) -> Option<smallvec::SmallVec<[u32; 5]>> {
-    let k = sides.len();
-    let a = |i: usize, by: usize| i64::from(sides[(i + by) % k]);
-    let doubled: smallvec::SmallVec<[i64; 5]> = match k {
-        3 => (0..3).map(|i| a(i, 1) + a(i, 2) - a(i, 0)).collect(),
-        5 => (0..5).map(|i| a(i, 0) + a(i, 1) + a(i, 4) - a(i, 2) - a(i, 3)).collect(),
-        _ => return None,
-    };
-    doubled.iter().all(|&l| l > 0).then(|| doubled.iter().map(|&l| l as u32).collect())
+fn double_spokes(sides: &[u32]) -> Option<Spokes> {
+    let length = |own: i64| u32::try_from(own).ok().filter(|&l| l > 0);
+    match *sides {
+        [a, b, c] => {
+            let [a, b, c] = [a, b, c].map(i64::from);
+            [b + c - a, c + a - b, a + b - c].into_iter().map(length).collect()
+        }
+        [a, b, c, d, e] => {
+            let sides = [a, b, c, d, e].map(i64::from);
+            let total: i64 = sides.iter().sum();
+            (0..5).map(|i| length(total - 2 * (sides[(i + 2) % 5] + sides[(i + 3) % 5]))).collect()
+        }
+        _ => None,
+    }
 }
 
 fn is_simple(sides: &[u32]) -> bool {
@@ -382,18 +392,25 @@ fn chords(polygon: &Polygon, most: usize) -> Vec<Chord> {
     for (from, to) in pairs {
         for start in (1..sides[from]).step_by(stride(sides[from])) {
             for end in (1..sides[to]).step_by(stride(sides[to])) {
-                let parts = Chord { from, start, to, end, length: 0 }.parts(&sides);
+                let mut parts = Chord { from, start, to, end, length: 0 }.parts(&sides);
                 for length in lengths(&parts) {
-                    if let [Some(a), Some(b)] = spokes(&parts, length) {
+                    parts
+                        .iter_mut()
+                        .filter_map(|part| part.last_mut())
+                        .for_each(|last| *last = length);
+                    if let [Some(a), Some(b)] = spokes(&parts) {
                         let chord = Chord { from, start, to, end, length };
-                        scored.push((imbalance(&a, &b, length), chord));
+                        // Of numbers that are not negative the bits are in the same order.
+                        scored.push(Reverse((imbalance(&a, &b, length).to_bits(), chord)));
                     }
                 }
             }
         }
     }
-    scored.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
-    distinct(scored.into_iter().map(|(_, chord)| chord), polygon, &sides, most)
+    // Of thousands only the first few are looked at.
+    let mut best = BinaryHeap::from(scored);
+    let in_order = std::iter::from_fn(|| best.pop().map(|Reverse((_, chord))| chord));
+    distinct(in_order, polygon, &sides, most)
 }
 
 /// Long sides are tried at some twenty places only.
@@ -422,14 +439,10 @@ fn lengths(parts: &[Sides; 2]) -> std::ops::Range<u32> {
     least..most
 }
 
-/// Twice the spokes of both parts if the chord has that length; `None` for one that has none.
-fn spokes(parts: &[Sides; 2], length: u32) -> [Option<smallvec::SmallVec<[u32; 5]>>; 2] {
-    parts.each_ref().map(|part| double_spokes(&with_last(part, length)))
-}
-
-/// The side lengths with the chord as the last.
-fn with_last(part: &[u32], length: u32) -> Sides {
-    part[..part.len() - 1].iter().copied().chain([length]).collect()
+/// Twice the spokes of both parts; `None` for one that has none.
+fn spokes(parts: &[Sides; 2]) -> [Option<Spokes>; 2] {
+    let [a, b] = parts;
+    [double_spokes(a), double_spokes(b)]
 }
 
 /// How uneven a pair of parts is: the mean squared deviation of the spokes from their mean, plus
@@ -482,7 +495,7 @@ fn distinct(
         if chosen.len() == most {
             break;
         }
-        let [Some(a), Some(b)] = spokes(&chord.parts(sides), chord.length) else { continue };
+        let [Some(a), Some(b)] = spokes(&chord.parts(sides)) else { continue };
         let feet = feet(polygon, chord, [&a, &b]);
         if chosen.iter().all(|(_, other)| differs(other, &feet)) {
             chosen.push((chord, feet));
