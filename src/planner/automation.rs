@@ -63,9 +63,11 @@ impl Automation<'_> {
         let size =
             Size { start: self.faces as i64, now: faces as i64, drift: self.plan.size_drift };
         let mut schedule = Schedule::new(size);
-        let probes = || Contact::new(self.reference, faces);
-        let mut contact = probes();
-        contact.attach(mesh, self.reference)?;
+        let attached = |mesh: &QuadMesh| {
+            let mut contact = Contact::new(self.reference, faces);
+            contact.attach(mesh, self.reference).map(|()| contact)
+        };
+        let mut contact = attached(mesh)?;
         // Of the mean at a corner: a mesh of fewer faces may not have worse ones.
         let allowed = Slack {
             distance: (self.gate.rms * self.budget.rms).powi(2) * contact.probe_count() as f64,
@@ -75,11 +77,10 @@ impl Automation<'_> {
             distance: allowed.distance - contact.squared_distances(),
             angles: allowed.angles * corners(mesh) - angles(mesh),
         };
-        self.smooth_between(mesh, watch)?;
+        self.smooth_between((mesh, &mut contact), watch)?;
         for i in (0..self.plan.stages).take_while(|_| !watch.cancelled()) {
             watch.stage(i, self.plan.stages);
             schedule.measure(mesh);
-            contact.attach(mesh, self.reference)?;
             let (lambda, faces) = (self.plan.lambda(i), self.patch_faces(i));
             schedule.restart(left(mesh, &contact));
             let refills = (Stage::Refills, lambda);
@@ -101,7 +102,7 @@ impl Automation<'_> {
             }
             if i + 1 < self.plan.stages {
                 schedule.rest();
-                self.smooth_between(mesh, watch)?;
+                self.smooth_between((mesh, &mut contact), watch)?;
             } else {
                 // After all that is greedy: so the global plan never leaves more than that alone.
                 let groups = (Stage::Groups, lambda);
@@ -109,7 +110,8 @@ impl Automation<'_> {
             }
         }
         // Its memory is given back before the smoothing, which takes as much.
-        self.last_rounds((mesh, || contact), &mut schedule, (&[Stage::Types], left), watch)?;
+        let kept = |_: &QuadMesh| Ok(contact);
+        self.last_rounds((mesh, kept), &mut schedule, (&[Stage::Types], left), watch)?;
         self.release_pins(mesh);
         self.smooth(mesh, self.smooth, watch)?;
         // After the pins of poor quads have been released: most of those can go back then.
@@ -125,7 +127,7 @@ impl Automation<'_> {
         }
         // What mends a quad may make a T-junction where nothing else does.
         let rest = [Stage::Types, Stage::Poor, Stage::Types];
-        if self.last_rounds((mesh, probes), &mut schedule, (&rest, left), watch)? {
+        if self.last_rounds((mesh, attached), &mut schedule, (&rest, left), watch)? {
             settled.retain(|&v| mesh.is_alive(v));
             for &v in &settled {
                 mesh.pin(v);
@@ -140,7 +142,7 @@ impl Automation<'_> {
     /// angles, whatever is left of them.
     fn last_rounds(
         &self,
-        (mesh, contact): (&mut QuadMesh, impl FnOnce() -> Contact),
+        (mesh, contact): (&mut QuadMesh, impl FnOnce(&QuadMesh) -> Result<Contact, MeshError>),
         schedule: &mut Schedule,
         (stages, slack): (&[Stage], impl Fn(&QuadMesh, &Contact) -> Slack),
         watch: &dyn Watch,
@@ -153,8 +155,7 @@ impl Automation<'_> {
             return Ok(false);
         }
         let before = schedule.edits.len();
-        let mut contact = contact();
-        contact.attach(mesh, self.reference)?;
+        let mut contact = contact(mesh)?;
         schedule.restart(Slack { angles: f64::INFINITY, ..slack(mesh, &contact) });
         for &stage in stages {
             let step = (stage, self.plan.lambda_types);
@@ -260,15 +261,21 @@ impl Automation<'_> {
         self.gate.hausdorff * self.budget.hausdorff
     }
 
-    /// Smooths before more edits; a run that is to stop leaves that to the smoothing at its end.
-    fn smooth_between(&self, mesh: &mut QuadMesh, watch: &dyn Watch) -> Result<(), MeshError> {
+    /// Smooths before more edits, after which contact is looked up anew; a run that is to stop leaves
+    /// that to the smoothing at its end.
+    fn smooth_between(
+        &self,
+        (mesh, contact): (&mut QuadMesh, &mut Contact),
+        watch: &dyn Watch,
+    ) -> Result<(), MeshError> {
         let iterations = self.plan.smooth_between;
         // Without stages the faces are fitted to the reference at least.
         if watch.cancelled() || iterations == 0 && self.plan.stages > 0 {
             return Ok(());
         }
         let options = SmoothOptions { iterations, hurried: 0, ..self.smooth.clone() };
-        self.smooth(mesh, &options, watch)
+        self.smooth(mesh, &options, watch)?;
+        contact.attach(mesh, self.reference)
     }
 
     fn smooth(
