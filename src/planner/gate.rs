@@ -208,8 +208,8 @@ struct Hope {
 /// converge fastest. Of the edits that pass in the end 1.4 % are given up too early for their angles
 /// on Spot, Blub and the bunny, and 0.5 % for their quads on Spot, the goat head, the penguin and the
 /// feature type; of those that do not pass for their quads, three in four before the relaxing.
-/// Of those that leave the reference bare, five in six are given up before the relaxing on Spot, and
-/// most others after a sixth of it; of those that pass, 0.3 %.
+/// Of those that leave the reference bare, nine in ten are given up before the relaxing on Spot, and
+/// half of the others after a sixth of it; of those that pass, 1 in 3000 and 1 in 200.
 const HOPES: [Hope; 7] = [
     Hope { times: 7.0, share: 0.3, lack: 1.6, bare: 1.1 },
     Hope { times: 3.4, share: 0.15, lack: 0.4, bare: 1.0 },
