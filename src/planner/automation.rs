@@ -275,7 +275,8 @@ impl Automation<'_> {
         }
         let options = SmoothOptions { iterations, hurried: 0, ..self.smooth.clone() };
         self.smooth(mesh, &options, watch)?;
-        contact.attach(mesh, self.reference)
+        // A run that is to stop makes no more edits.
+        if watch.cancelled() { Ok(()) } else { contact.attach(mesh, self.reference) }
     }
 
     fn smooth(

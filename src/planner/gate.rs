@@ -200,8 +200,8 @@ struct Hope {
     share: f64,
     /// How much its quads may still lack of a fair scaled Jacobian.
     lack: f64,
-    /// How many times as far as allowed the reference may still be from it; infinite: not looked at.
-    bare: f64,
+    /// How many times as far as allowed the reference may still be from it, if that is looked at.
+    bare: Option<f64>,
 }
 
 /// Before the relaxing and after each sixth of it. Large patches, which are most of the work,
@@ -211,13 +211,13 @@ struct Hope {
 /// Of those that leave the reference bare, nine in ten are given up before the relaxing on Spot, and
 /// half of the others after a sixth of it; of those that pass, 1 in 3000 and 1 in 200.
 const HOPES: [Hope; 7] = [
-    Hope { times: 7.0, share: 0.3, lack: 1.6, bare: 1.1 },
-    Hope { times: 3.4, share: 0.15, lack: 0.4, bare: 1.0 },
-    Hope { times: 2.2, share: 0.08, lack: 0.1, bare: f64::INFINITY },
-    Hope { times: 1.7, share: 0.05, lack: 0.07, bare: f64::INFINITY },
-    Hope { times: 1.35, share: 0.03, lack: 0.05, bare: f64::INFINITY },
-    Hope { times: 1.1, share: 0.02, lack: 0.03, bare: f64::INFINITY },
-    Hope { times: 1.0, share: 0.0, lack: 0.0, bare: f64::INFINITY },
+    Hope { times: 7.0, share: 0.3, lack: 1.6, bare: Some(1.1) },
+    Hope { times: 3.4, share: 0.15, lack: 0.4, bare: Some(1.0) },
+    Hope { times: 2.2, share: 0.08, lack: 0.1, bare: None },
+    Hope { times: 1.7, share: 0.05, lack: 0.07, bare: None },
+    Hope { times: 1.35, share: 0.03, lack: 0.05, bare: None },
+    Hope { times: 1.1, share: 0.02, lack: 0.03, bare: None },
+    Hope { times: 1.0, share: 0.0, lack: 0.0, bare: None },
 ];
 
 impl Gate {
@@ -243,7 +243,7 @@ impl Gate {
             |growth: f64| Rejected { failure: Failure::Angles, needs: (growth + extra) / worth };
         let least = setting.options.min_jacobian.min(before.jacobian);
         let parts = HOPES.len() as u32 - 1;
-        // Then it takes longer until the surface is covered.
+        // Where vertices slide along a crease, it takes longer until the surface is covered.
         let slides = self.patch.rails().next().is_some();
         for (hope, part) in HOPES.iter().zip(0..) {
             if part > 0 {
@@ -266,7 +266,8 @@ impl Gate {
             if (least - after.jacobian).max(after.deficit - before.deficit) > hope.lack {
                 return Err(Failure::Jacobian.into());
             }
-            if !slides && !self.is_covered(touched, (setting, contact), hope.bare) {
+            let bare = hope.bare.filter(|_| !slides);
+            if bare.is_some_and(|times| !self.is_covered(touched, (setting, contact), times)) {
                 return Err(Failure::Distance.into());
             }
         }
@@ -456,11 +457,10 @@ impl Gate {
         times: f64,
     ) -> bool {
         let is_new = |f: Vertex| touched.binary_search(&f).is_ok();
-        times == f64::INFINITY
-            || self.all_probes((touched, is_new), contact, |cover, (own, probe, before)| {
-                let most = (times * setting.cover.max(before)).powi(2);
-                own <= most || cover.is_within(&probe, most)
-            })
+        self.all_probes((touched, is_new), contact, |cover, (own, probe, before)| {
+            let most = (times * setting.cover.max(before)).powi(2);
+            own <= most || cover.is_within(&probe, most)
+        })
     }
 
     /// How much Σ squared distance grows over the probes of the region; `None` if one of them is
