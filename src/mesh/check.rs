@@ -82,7 +82,7 @@ pub fn check(mesh: &PolyMesh) -> Result<(), Flaw> {
     check_connectivity(mesh, &Topology::new(mesh))
 }
 
-fn check_faces(mesh: &PolyMesh) -> Result<(), Flaw> {
+pub(super) fn check_faces(mesh: &PolyMesh) -> Result<(), Flaw> {
     if mesh.face_count() == 0 {
         return Err(Flaw::NoFaces);
     }
@@ -104,7 +104,7 @@ fn check_faces(mesh: &PolyMesh) -> Result<(), Flaw> {
     }
 }
 
-fn check_connectivity(mesh: &PolyMesh, topology: &Topology) -> Result<(), Flaw> {
+pub(super) fn check_connectivity(mesh: &PolyMesh, topology: &Topology) -> Result<(), Flaw> {
     if let Some(&h) = topology.nonmanifold_edges.first() {
         let end = |h: u32| mesh.corners()[h as usize];
         return Err(Flaw::NonManifoldEdge { a: end(h), b: end(topology.next[h as usize]) });

@@ -33,7 +33,7 @@ pub(super) struct Crack {
 impl Draft {
     /// Puts the vertices that hang on boundary edges into the faces of these edges.
     pub(super) fn weld_cracks(&mut self, log: &mut Log) -> Result<(), MendError> {
-        let cracks = cracks(&self.mesh);
+        let cracks = self.cracks();
         if cracks.is_empty() {
             return Ok(());
         }
@@ -56,20 +56,22 @@ impl Draft {
         }
         self.set_faces(rows)
     }
-}
 
-/// All cracks that can be welded. O(n log n) for n corners, if chains are short.
-pub(super) fn cracks(mesh: &PolyMesh) -> Vec<Crack> {
-    let topology = Topology::new(mesh);
-    let rim = Rim::new(mesh, &topology);
-    let found = rim.edges.iter().filter_map(|&h| rim.crack(h));
-    let mut cracks: Vec<Crack> = found.collect();
-    let mut uses = vec![0_u8; mesh.corner_count()];
-    for &h in cracks.iter().flat_map(|c| c.chain.iter().chain([&c.half_edge])) {
-        uses[h as usize] = uses[h as usize].saturating_add(1);
+    /// All cracks that can be welded. O(n log n) for n corners, if chains are short.
+    pub(super) fn cracks(&self) -> Vec<Crack> {
+        let rim = Rim::new(&self.mesh, self.topology());
+        let found = rim.edges.iter().filter_map(|&h| rim.crack(h));
+        let mut cracks: Vec<Crack> = found.collect();
+        if cracks.is_empty() {
+            return cracks;
+        }
+        let mut uses = vec![0_u8; self.mesh.corner_count()];
+        for &h in cracks.iter().flat_map(|c| c.chain.iter().chain([&c.half_edge])) {
+            uses[h as usize] = uses[h as usize].saturating_add(1);
+        }
+        cracks.retain(|c| c.chain.iter().chain([&c.half_edge]).all(|&h| uses[h as usize] == 1));
+        cracks
     }
-    cracks.retain(|c| c.chain.iter().chain([&c.half_edge]).all(|&h| uses[h as usize] == 1));
-    cracks
 }
 
 /// The edges that have one face.

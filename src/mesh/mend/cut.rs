@@ -5,11 +5,10 @@
 //! no edge keeps more than two faces: one pass is enough when every face is simple.
 
 use super::{Draft, Log, MendError, MendKind};
-use crate::mesh::{PolyMesh, Topology};
 
 impl Draft {
     pub(super) fn cut(&mut self, log: &mut Log) -> Result<(), MendError> {
-        let topology = Topology::new(&self.mesh);
+        let topology = self.topology();
         for &h in &topology.nonmanifold_edges {
             let vertex = self.mesh.corners()[h as usize];
             log.note(MendKind::NonManifoldEdge, self.sources[vertex as usize])?;
@@ -22,11 +21,11 @@ impl Draft {
         if fans.iter().all(|&n| n <= 1) {
             return Ok(());
         }
-        self.split_vertices(&topology, &fans)
+        self.split_vertices(&fans)
     }
 
     /// Gives each fan a vertex of its own; copies stand behind each other in the old order.
-    fn split_vertices(&mut self, topology: &Topology, fans: &[u32]) -> Result<(), MendError> {
+    fn split_vertices(&mut self, fans: &[u32]) -> Result<(), MendError> {
         let mut next_copy = Vec::with_capacity(fans.len());
         let (mut points, mut sources) = (Vec::new(), Vec::new());
         for (v, &count) in fans.iter().enumerate() {
@@ -40,10 +39,10 @@ impl Draft {
             next_copy[v as usize] += 1;
             next_copy[v as usize] - 1
         };
+        let topology = self.topology();
         let vertex_of_fan: Vec<u32> = topology.fan_vertex.iter().map(take_copy).collect();
         let corners = topology.fan.iter().map(|&fan| vertex_of_fan[fan as usize]).collect();
-        self.mesh = PolyMesh::from_rows(points, self.mesh.offsets().to_vec(), corners)?;
         self.sources = sources;
-        Ok(())
+        self.set_vertices(points, corners)
     }
 }

@@ -23,7 +23,7 @@ use crate::mesh::{PolyMesh, Topology};
 impl Draft {
     /// Removes doublets until none is left. The mesh must be manifold and oriented.
     pub(super) fn remove_doublets(&mut self, log: &mut Log) -> Result<(), MendError> {
-        let topology = Topology::new(&self.mesh);
+        let topology = self.topology();
         let is_doublet =
             |&fan: &usize| topology.fan_corners[fan] == 2 && !topology.fan_on_boundary[fan];
         let found = (0..topology.fan_count()).filter(is_doublet);
@@ -32,7 +32,7 @@ impl Draft {
             return Ok(());
         }
         waiting.sort_unstable();
-        let mut surface = Surface::new(&self.mesh, &topology);
+        let mut surface = Surface::new(&self.mesh, topology);
         surface.waiting = waiting.into();
         while let Some(v) = surface.waiting.pop_front() {
             if let Some(kind) = surface.remove(v) {

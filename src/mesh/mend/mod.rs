@@ -18,9 +18,11 @@ mod faces;
 mod orient;
 
 use serde::Serialize;
+use std::cell::OnceCell;
 use thiserror::Error;
 
-use super::{Flaw, MeshError, Point, PolyMesh, check};
+use super::check::{check_connectivity, check_faces};
+use super::{Flaw, MeshError, Point, PolyMesh, Topology};
 
 /// One round mends everything that is known to occur; the others are for what is not.
 const ROUNDS: usize = 4;
@@ -205,13 +207,13 @@ pub fn mend(mesh: PolyMesh, policy: MendPolicy) -> Result<(PolyMesh, MendReport)
     let (groups, names) = (mesh.groups().to_vec(), mesh.group_names().to_vec());
     let mut draft = Draft::new(mesh);
     draft.note_unused(&mut log)?;
-    let mut checked = check(&draft.mesh);
+    let mut checked = draft.check();
     for _ in 0..ROUNDS {
-        if checked.is_ok() && cracks::cracks(&draft.mesh).is_empty() {
+        if checked.is_ok() && draft.cracks().is_empty() {
             break;
         }
         draft.mend_once(&mut log)?;
-        checked = check(&draft.mesh);
+        checked = draft.check();
     }
     checked.map_err(MendError::Stuck)?;
     let groups = draft.faces.iter().map(|&f| groups[f as usize]).collect();
@@ -224,6 +226,8 @@ pub fn mend(mesh: PolyMesh, policy: MendPolicy) -> Result<(PolyMesh, MendReport)
 #[derive(Debug)]
 struct Draft {
     mesh: PolyMesh,
+    /// That of the mesh as it is, once it has been asked for.
+    topology: OnceCell<Topology>,
     /// Input vertex of each vertex.
     sources: Vec<u32>,
     /// Input face of each face.
@@ -234,7 +238,16 @@ impl Draft {
     fn new(mesh: PolyMesh) -> Self {
         let sources = (0..mesh.vertex_count() as u32).collect();
         let faces = (0..mesh.face_count() as u32).collect();
-        Self { mesh, sources, faces }
+        Self { mesh, topology: OnceCell::new(), sources, faces }
+    }
+
+    fn topology(&self) -> &Topology {
+        self.topology.get_or_init(|| Topology::new(&self.mesh))
+    }
+
+    fn check(&self) -> Result<(), Flaw> {
+        check_faces(&self.mesh)?;
+        check_connectivity(&self.mesh, self.topology())
     }
 
     /// One pass over all kinds of mends; each stage counts on those before it.
@@ -275,12 +288,19 @@ impl Draft {
         let corners = self.mesh.corners().iter().map(|&v| number[v as usize]).collect();
         let points = kept.iter().map(|&v| self.mesh.points()[v]).collect();
         self.sources = kept.iter().map(|&v| self.sources[v]).collect();
+        self.set_vertices(points, corners)
+    }
+
+    /// Puts the same faces on other vertices: theirs are `corners`, one after the other.
+    fn set_vertices(&mut self, points: Vec<Point>, corners: Vec<u32>) -> Result<(), MendError> {
+        self.topology.take();
         self.mesh = PolyMesh::from_rows(points, self.mesh.offsets().to_vec(), corners)?;
         Ok(())
     }
 
     /// Puts other faces on the same vertices.
     fn set_faces(&mut self, rows: Rows) -> Result<(), MendError> {
+        self.topology.take();
         let points: Vec<Point> = self.mesh.points().to_vec();
         self.mesh = PolyMesh::from_rows(points, rows.offsets, rows.corners)?;
         self.faces = rows.sources;

@@ -6,11 +6,11 @@ use crate::mesh::{NONE, Topology};
 impl Draft {
     /// Turns over the faces of the minority in each component; on a tie the first face stays.
     pub(super) fn orient(&mut self, log: &mut Log) -> Result<(), MendError> {
-        let topology = Topology::new(&self.mesh);
+        let topology = self.topology();
         if !topology.same_direction.contains(&true) {
             return Ok(());
         }
-        let flipped = self.minority(&topology)?;
+        let flipped = self.minority(topology)?;
         let mut rows = Rows::new();
         let mut turned = Vec::new();
         for (f, face) in self.mesh.faces().enumerate() {
