@@ -6,10 +6,10 @@
 //! that an edit respects.
 
 use super::components::partner_pairs;
-use super::segments::SegmentTree;
 use super::shape::Shape;
 use super::stats::{max, mean, percentile, share};
 use crate::mesh::{NONE, Point, PolyMesh, Topology, Vector};
+use crate::surface::Segments;
 use serde::Serialize;
 
 /// Most samples on one edge.
@@ -66,7 +66,7 @@ pub struct CurveDistance {
 
 impl CurveDistance {
     fn new(points: &[Point], to: Vec<[Point; 2]>, edge: f64, diagonal: f64) -> Option<Self> {
-        let mut distances = SegmentTree::new(to).distances(points);
+        let mut distances = Segments::new(to).0.distances(points);
         let mean = mean(&distances)?;
         let near = distances.iter().filter(|&&d| d < 0.1 * edge).count();
         Some(Self {
@@ -157,7 +157,7 @@ impl Boundary {
             Self::Counts { mesh_boundary_edges: own.len(), ref_boundary_edges: lines.border.len() };
         let step = step(mean_half_edge(shape), diagonal);
         let from = |from: &[[Point; 2]], to: &[[Point; 2]]| {
-            let tree = SegmentTree::new(to.to_vec());
+            let (tree, _) = Segments::new(to.to_vec());
             let distances = tree.distances(&points_along(from, step));
             Some((max(&distances)? / diagonal, mean(&distances)? / diagonal))
         };

@@ -18,7 +18,6 @@ mod irregularity;
 mod jacobian;
 mod planarity;
 mod registry;
-mod segments;
 mod shape;
 mod stats;
 mod summary;

@@ -10,7 +10,7 @@
 use fixedbitset::FixedBitSet;
 
 use super::reference::Reference;
-use super::tree::Tree;
+use super::segments::Segments;
 use crate::knobs::knobs;
 use crate::mesh::{DisjointSets, NONE, Point, PolyMesh, Topology, Vector};
 
@@ -86,7 +86,7 @@ pub struct SharpLines {
     segments: Vec<[Point; 2]>,
     chain: Vec<u32>,
     lengths: Vec<f64>,
-    tree: Option<Tree>,
+    tree: Segments,
 }
 
 impl SharpLines {
@@ -99,33 +99,24 @@ impl SharpLines {
             reference.creases().iter().filter(|c| c.angle_deg >= weak).copied().collect();
         let chains = Chains::new(&edges, reference.points(), options);
         let kept = chains.keep(&edges, options.min_chain_edges * edge);
-        let mut lines =
-            Self { segments: Vec::new(), chain: Vec::new(), lengths: Vec::new(), tree: None };
+        let (mut segments, mut chain, mut lengths) = (Vec::new(), Vec::new(), Vec::new());
         let mut number = vec![NONE; edges.len()];
         for (e, crease) in edges.iter().enumerate().filter(|&(e, _)| kept[chains.of[e] as usize]) {
             let of = chains.of[e] as usize;
             if number[of] == NONE {
-                number[of] = lines.lengths.len() as u32;
-                lines.lengths.push(chains.length[of]);
+                number[of] = lengths.len() as u32;
+                lengths.push(chains.length[of]);
             }
-            lines.chain.push(number[of]);
-            lines.segments.push([crease.a, crease.b].map(|v| reference.points()[v as usize]));
+            chain.push(number[of]);
+            segments.push([crease.a, crease.b].map(|v| reference.points()[v as usize]));
         }
-        lines.index();
-        lines
-    }
-
-    fn index(&mut self) {
-        if self.segments.is_empty() {
-            return;
+        let (tree, order) = Segments::new(segments.clone());
+        Self {
+            segments: order.iter().map(|&s| segments[s as usize]).collect(),
+            chain: order.iter().map(|&s| chain[s as usize]).collect(),
+            lengths,
+            tree,
         }
-        // A segment is a triangle with a double corner.
-        let flat = |s: u32| [2 * s, 2 * s + 1, 2 * s + 1];
-        let ends = self.segments.as_flattened().to_vec();
-        let (tree, order) = Tree::build(ends, self.segments.len(), flat);
-        self.segments = order.iter().map(|&s| self.segments[s as usize]).collect();
-        self.chain = order.iter().map(|&s| self.chain[s as usize]).collect();
-        self.tree = Some(tree);
     }
 
     /// Ends of the segments of all lines.
@@ -149,13 +140,13 @@ impl SharpLines {
     /// The closest point of a line that is at most `radius` away. O(log n) expected.
     #[must_use]
     pub fn closest(&self, query: &Point, radius: f64) -> Option<Point> {
-        self.tree.as_ref()?.closest(query, radius).map(|hit| hit.point)
+        self.tree.closest(query, radius)
     }
 
     /// Whether a line is at most `radius` away. O(log n) expected.
     #[must_use]
     pub fn is_within(&self, query: &Point, radius: f64) -> bool {
-        self.tree.as_ref().is_some_and(|tree| tree.is_within(query, radius))
+        self.tree.is_within(query, radius)
     }
 }
 

@@ -8,6 +8,7 @@
 mod features;
 mod reference;
 mod samples;
+mod segments;
 mod tree;
 #[cfg(test)]
 pub(crate) mod trial;
@@ -19,6 +20,7 @@ pub use features::{
 pub use reference::{Hit, Reference, SurfaceError};
 pub(crate) use samples::spread;
 pub use samples::{Deviation, deviation, sample_triangles};
+pub(crate) use segments::Segments;
 pub use triangulation::{Triangulation, triangulate};
 
 /// Squared distance from a point to a triangle, in squared units of the file. O(1).
