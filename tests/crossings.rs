@@ -7,7 +7,7 @@ use quadmend::mesh::shapes;
 use quadmend::ops::{Refusal, Resample, within_line};
 use quadmend::patch::{Refill, fillings};
 use quadmend::planner::clusters::{Clusters, Limits};
-use quadmend::planner::crossings::{Bounds, around};
+use quadmend::planner::crossings::{Bounds, Crossings};
 use quadmend::sqrtcc::{HalfEdge, QuadKind, QuadMesh, Vertex, lift};
 use quadmend::surface::{FeatureOptions, Reference, SharpLines};
 
@@ -85,7 +85,7 @@ fn is_mended_from(q: &mut QuadMesh, lines: &SharpLines, seed: Vertex) -> usize {
     let before = q.total_irregularity();
     let state = fingerprint(q);
     let bounds = Bounds { edges: 8, faces: 400, partners: 12, tries: 3 };
-    let found = around(q, seed, (&mut Clusters::default(), lines), bounds);
+    let found = Crossings::default().around(q, seed, lines, bounds);
     assert_eq!(fingerprint(q), state, "searching changes nothing");
     let (gain, crossing) = found.into_iter().next().expect("a crossing");
     crossing.run(q).expect("it was found on this mesh");
@@ -152,5 +152,5 @@ fn nothing_is_looked_for_where_nothing_is_irregular() {
     let face = q.target(middle_edge(&q));
     assert!(Clusters::default().around(&q, face, limits).is_empty());
     let bounds = Bounds { edges: 8, faces: 400, partners: 4, tries: 3 };
-    assert!(around(&mut q, face, (&mut Clusters::default(), &lines), bounds).is_empty());
+    assert!(Crossings::default().around(&mut q, face, &lines, bounds).is_empty());
 }

@@ -9,8 +9,9 @@ use super::lines::{Line, beside};
 use crate::ops::Resample;
 use crate::patch::crossing::{Crossing, Shift};
 use crate::patch::{Filling, Refill, Region, fillings};
-use crate::sqrtcc::{HalfEdge, QuadKind, QuadMesh, Vertex};
+use crate::sqrtcc::{HalfEdge, Mark, QuadKind, QuadMesh, Vertex};
 use crate::surface::SharpLines;
+use rustc_hash::FxHashMap;
 
 /// Lines that are crossed at most, one behind the other.
 const LINES: usize = 3;
@@ -65,37 +66,88 @@ impl Patch {
     }
 }
 
-/// The few smallest crossings that begin at the feature edges nearest to `seed`, with how many
-/// elements fewer each leaves. The mesh is unchanged afterwards.
-pub fn around(
+/// Finds crossings, and keeps what begins at each feature edge: seeds nearby share their edges.
+#[derive(Debug, Clone, Default)]
+pub struct Crossings {
+    clusters: Clusters,
+    /// By the edge: what was found, and whether a patch was left out because it was too large.
+    known: FxHashMap<HalfEdge, (Vec<Found>, bool)>,
+    limited: bool,
+}
+
+impl Crossings {
+    /// Forgets what was found: the mesh has changed, or what is looked for.
+    pub fn forget(&mut self) {
+        self.known.clear();
+    }
+
+    /// Whether a patch has been left out since this was asked last because it was too large.
+    pub fn take_limited(&mut self) -> bool {
+        std::mem::take(&mut self.limited)
+    }
+
+    /// The few smallest crossings that begin at the feature edges nearest to `seed`, with how many
+    /// elements fewer each leaves. The mesh is unchanged afterwards.
+    ///
+    /// *Precondition:* all but the seed is as it was when something was last forgotten.
+    pub fn around(
+        &mut self,
+        mesh: &mut QuadMesh,
+        seed: Vertex,
+        lines: &SharpLines,
+        bounds: Bounds,
+    ) -> Vec<(u32, Crossing)> {
+        let edges = self.clusters.feature_edges(mesh, seed, bounds.edges);
+        for &edge in &edges {
+            let (_, limited) = self.known.entry(edge).or_insert_with(|| {
+                let found = beginning_at(mesh, edge, (&mut self.clusters, lines), bounds);
+                (found, self.clusters.take_limited())
+            });
+            self.limited |= *limited;
+        }
+        let mut found: Vec<&Found> = edges.iter().flat_map(|edge| &self.known[edge].0).collect();
+        found.sort_by_key(|f| (f.faces(), std::cmp::Reverse(f.gain)));
+        let mark = mesh.mark();
+        let crossings = found.into_iter().take(bounds.tries).filter_map(|found| {
+            let crossing = found.place(mesh);
+            mesh.undo_to(mark);
+            Some((found.gain, crossing?))
+        });
+        crossings.collect()
+    }
+}
+
+/// The smallest crossing of each count of lines that begins at `edge`, with an edge more and with
+/// an edge less. The mesh is unchanged afterwards.
+fn beginning_at(
     mesh: &mut QuadMesh,
-    seed: Vertex,
+    edge: HalfEdge,
     (clusters, lines): (&mut Clusters, &SharpLines),
     bounds: Bounds,
-) -> Vec<(u32, Crossing)> {
-    let mut found: Vec<Found> = Vec::new();
-    let mark = mesh.mark();
-    for edge in clusters.feature_edges(mesh, seed, bounds.edges) {
-        let chain = chain(mesh, edge);
-        for count in 1..=chain.edges.len() {
-            for cut in [false, true] {
-                let chain = (&chain.edges[..count], &chain.walls[..count - 1]);
-                found.extend(crossing(mesh, chain, cut, (clusters, lines), bounds));
-                mesh.undo_to(mark);
+) -> Vec<Found> {
+    let (chain, mark) = (chain(mesh, edge), mesh.mark());
+    let mut found = Vec::new();
+    for cut in [false, true] {
+        let mut way = Way::default();
+        for (k, &edge) in chain.edges.iter().enumerate() {
+            if way.resample(mesh, edge, cut, lines).is_none() {
+                break;
             }
+            found.extend(way.crossing(mesh, &chain.walls[..k], clusters, bounds));
         }
-    }
-    let faces = |f: &Found| f.patches.iter().map(|p| p.region.faces.len()).sum::<usize>();
-    found.sort_by_key(|f| (faces(f), std::cmp::Reverse(f.gain)));
-    let crossings = found.into_iter().take(bounds.tries).filter_map(|found| {
-        let crossing = found.place(mesh);
         mesh.undo_to(mark);
-        Some((found.gain, crossing?))
-    });
-    crossings.collect()
+    }
+    // Of those as large and as good the one of fewer lines is first.
+    found.sort_by_key(|f| f.shifts.len());
+    found
 }
 
 impl Found {
+    /// Number of faces of all patches.
+    fn faces(&self) -> usize {
+        self.patches.iter().map(|p| p.region.faces.len()).sum()
+    }
+
     /// With places for what is new. The mesh is left resampled.
     fn place(&self, mesh: &mut QuadMesh) -> Option<Crossing> {
         self.shifts.iter().try_for_each(|shift| shift.run(mesh).map(drop)).ok()?;
@@ -131,68 +183,118 @@ fn chain(mesh: &QuadMesh, edge: HalfEdge) -> Chain {
     chain
 }
 
-/// The smallest crossing of a chain of feature edges that leaves fewer irregular elements. The mesh
-/// is left resampled.
-fn crossing(
-    mesh: &mut QuadMesh,
-    (edges, walls): (&[HalfEdge], &[Vec<Vertex>]),
-    cut: bool,
-    (clusters, lines): (&mut Clusters, &SharpLines),
-    bounds: Bounds,
-) -> Option<Found> {
-    let (mut shifts, mut sides, mut rise) = (Vec::new(), Vec::new(), 0);
-    for &edge in edges {
+/// A row of feature edges that have been resampled, one behind the other.
+#[derive(Debug, Default)]
+struct Way {
+    shifts: Vec<Shift>,
+    /// Irregularity that the resampling brought.
+    rise: i32,
+    /// Each vertex that came or stayed, and the faces before and after it.
+    sides: Vec<[Vertex; 3]>,
+    /// Regions before the first, and the state of the mesh in which they were found.
+    near: Option<(Vec<Region>, Mark)>,
+}
+
+impl Way {
+    /// Resamples one more edge, with an edge more or an edge less. `None` if that cannot be done.
+    fn resample(
+        &mut self,
+        mesh: &mut QuadMesh,
+        edge: HalfEdge,
+        cut: bool,
+        lines: &SharpLines,
+    ) -> Option<()> {
         let (before, after) = (mesh.target(edge), mesh.origin(QuadMesh::prev(edge)));
         let resample = if cut { Resample::Cut { edge } } else { join(mesh, edge)? };
         let line = Line::around(mesh, edge);
-        rise += resample.check(mesh).ok()?.delta();
+        self.rise += resample.check(mesh).ok()?.delta();
         let vertex = resample.run(mesh).ok()?;
         let shift = Shift { resample, slides: line.slides(mesh, vertex, lines) };
         shift.slide(mesh);
-        shifts.push(shift);
-        sides.push((vertex, before, after));
+        self.shifts.push(shift);
+        self.sides.push([vertex, before, after]);
+        Some(())
     }
-    // Not before all is resampled: a vertex that stays at one line may go at the next.
-    let sides = sides.into_iter().map(|(vertex, before, after)| {
-        let alive = mesh.is_alive(vertex) && mesh.is_alive(before) && mesh.is_alive(after);
-        alive.then(|| Some((mesh.find(vertex, before)?, mesh.find(vertex, after)?)))?
-    });
-    let sides: Vec<(HalfEdge, HalfEdge)> = sides.collect::<Option<_>>()?;
-    let mut patches: Vec<Patch> = Vec::new();
-    let mut left = bounds.faces;
-    for (wall, pair) in walls.iter().zip(sides.windows(2)) {
-        let region = clusters.spanning(mesh, &[pair[0].1, pair[1].0], wall, left)?;
-        let patch = Patch::new(region)?;
-        rise -= patch.gain;
-        left -= patch.region.faces.len();
-        patches.push(patch);
+
+    /// The half-edges from what is between the lines to the faces before and after, if all that is
+    /// still there: a vertex that stays at one line may go at the next.
+    fn half_edges(&self, mesh: &QuadMesh) -> Option<Vec<[HalfEdge; 2]>> {
+        let at = |&[vertex, before, after]: &[Vertex; 3]| {
+            let alive = [vertex, before, after].iter().all(|&v| mesh.is_alive(v));
+            alive.then(|| Some([mesh.find(vertex, before)?, mesh.find(vertex, after)?]))?
+        };
+        self.sides.iter().map(at).collect()
     }
-    let limits = Limits { faces: left, partners: bounds.partners, least_gain: LEAST_GAIN };
-    let near = clusters.beside(mesh, sides.first()?.0, limits);
-    if near.is_empty() {
-        return None;
-    }
-    let far = clusters.beside(mesh, sides.last()?.1, limits);
-    let after = |r: &Region| least_after(r.corners.len(), r.rim_irregularity_after);
-    let hope = |region: &Region| region.irregularity as i32 - after(region) as i32;
-    let faces = |&(i, k): &(usize, usize)| near[i].faces.len() + far[k].faces.len();
-    let all = (0..near.len()).flat_map(|i| (0..far.len()).map(move |k| (i, k)));
-    let pays = |&(i, k): &(usize, usize)| hope(&near[i]) + hope(&far[k]) > rise;
-    let mut pairs: Vec<(usize, usize)> =
-        all.filter(|pair| pays(pair) && faces(pair) <= left).collect();
-    pairs.sort_by_key(faces);
-    let (mut of_near, mut of_far) = (vec![None; near.len()], vec![None; far.len()]);
-    for (i, k) in pairs {
-        let a = of_near[i].get_or_insert_with(|| Patch::new(near[i].clone()));
-        let b = of_far[k].get_or_insert_with(|| Patch::new(far[k].clone()));
-        let (Some(a), Some(b)) = (a, b) else { continue };
-        let gain = a.gain + b.gain - rise;
-        if gain > 0 && are_apart(patches.iter().chain([&*a, &*b])) {
-            patches.extend([a.clone(), b.clone()]);
-            return Some(Found { gain: gain as u32, shifts, patches });
+
+    /// The smallest crossing of all the edges that leaves fewer irregular elements.
+    fn crossing(
+        &mut self,
+        mesh: &QuadMesh,
+        walls: &[Vec<Vertex>],
+        clusters: &mut Clusters,
+        bounds: Bounds,
+    ) -> Option<Found> {
+        let sides = self.half_edges(mesh)?;
+        let mut patches: Vec<Patch> = Vec::new();
+        let (mut left, mut rise) = (bounds.faces, self.rise);
+        for (wall, pair) in walls.iter().zip(sides.windows(2)) {
+            let region = clusters.spanning(mesh, &[pair[0][1], pair[1][0]], wall, left)?;
+            let patch = Patch::new(region)?;
+            rise -= patch.gain;
+            left -= patch.region.faces.len();
+            patches.push(patch);
         }
+        let limits = Limits { faces: left, partners: bounds.partners, least_gain: LEAST_GAIN };
+        let near = self.near(mesh, sides.first()?[0], clusters, limits);
+        if near.is_empty() {
+            return None;
+        }
+        let far = clusters.beside(mesh, sides.last()?[1], limits);
+        let after = |r: &Region| least_after(r.corners.len(), r.rim_irregularity_after);
+        let hope = |region: &Region| region.irregularity as i32 - after(region) as i32;
+        let faces = |&(i, k): &(usize, usize)| near[i].faces.len() + far[k].faces.len();
+        let all = (0..near.len()).flat_map(|i| (0..far.len()).map(move |k| (i, k)));
+        let pays = |&(i, k): &(usize, usize)| hope(&near[i]) + hope(&far[k]) > rise;
+        let mut pairs: Vec<(usize, usize)> =
+            all.filter(|pair| pays(pair) && faces(pair) <= left).collect();
+        pairs.sort_by_key(faces);
+        let (mut of_near, mut of_far) = (vec![None; near.len()], vec![None; far.len()]);
+        for (i, k) in pairs {
+            let a = of_near[i].get_or_insert_with(|| Patch::new(near[i].clone()));
+            let b = of_far[k].get_or_insert_with(|| Patch::new(far[k].clone()));
+            let (Some(a), Some(b)) = (a, b) else { continue };
+            let gain = a.gain + b.gain - rise;
+            if gain > 0 && are_apart(patches.iter().chain([&*a, &*b])) {
+                patches.extend([a.clone(), b.clone()]);
+                return Some(Found { gain: gain as u32, shifts: self.shifts.clone(), patches });
+            }
+        }
+        None
     }
-    None
+
+    /// Regions before the first edge: those that were found before another was resampled, unless
+    /// that has changed something there.
+    fn near(
+        &mut self,
+        mesh: &QuadMesh,
+        at: HalfEdge,
+        clusters: &mut Clusters,
+        limits: Limits,
+    ) -> &[Region] {
+        let is_known = self.near.as_ref().is_some_and(|(regions, mark)| {
+            let touched = mesh.touched_since(*mark);
+            let is_touched = |v: Vertex| touched.binary_search(&v).is_ok();
+            !regions.iter().any(|r| {
+                let rim = r.rim.iter().map(|&h| mesh.target(h));
+                r.faces.iter().chain(&r.interior).copied().chain(rim).any(is_touched)
+            })
+        });
+        if !is_known {
+            self.near = None;
+        }
+        let found = || (clusters.beside(mesh, at, limits), mesh.mark());
+        &self.near.get_or_insert_with(found).0
+    }
 }
 
 /// Whether no two of the patches share a face.

@@ -3,11 +3,12 @@
 use super::clusters::{Clusters, Limits};
 use super::contact::Contact;
 use super::cost::CostOptions;
+use super::crossings::{Bounds, Crossings};
 use super::edit::{Edit, walk_terms};
 use super::gate::{Failure, Gate, Passed, Price, Rejected, Setting, Shape};
 use super::global::Group;
 use super::movement::MovementGraph;
-use super::{PlanOptions, crossings, local};
+use super::{PlanOptions, local};
 use crate::mesh::Point;
 use crate::moves::Dipole;
 use crate::ops::Op;
@@ -205,6 +206,7 @@ pub struct Worker {
     taken: Option<usize>,
     gate: Gate,
     clusters: Clusters,
+    crossings: Crossings,
 }
 
 /// What failed is tried again once the exchange rate comes this near to what it needed: the mesh
@@ -249,6 +251,7 @@ impl Worker {
             None => self.mesh.clone_from(mesh),
         }
         self.taken = Some(changes.len());
+        self.crossings.forget();
     }
 
     /// The best edit that begins with `seed`.
@@ -263,7 +266,7 @@ impl Worker {
             Stage::Crossings => self.propose_crossing(seed, context, &mut outcome),
             Stage::Relocations => self.propose_refill((seed, 0), context, &mut outcome),
         }
-        outcome.limited = self.clusters.take_limited();
+        outcome.limited = self.clusters.take_limited() | self.crossings.take_limited();
         outcome.scope.sort_unstable();
         outcome.scope.dedup();
         // Those of all seeds are kept, and most of it was said more than once.
@@ -422,9 +425,8 @@ impl Worker {
     fn propose_crossing(&mut self, seed: Vertex, context: Context, outcome: &mut Outcome) {
         let (plan, faces) = (context.task.plan, context.task.faces);
         let (edges, partners) = (plan.crossings as usize, plan.partners as usize);
-        let bounds = crossings::Bounds { edges, faces, partners, tries: plan.tries as usize };
-        let tools = (&mut self.clusters, context.task.lines);
-        let found = crossings::around(&mut self.mesh, seed, tools, bounds);
+        let bounds = Bounds { edges, faces, partners, tries: plan.tries as usize };
+        let found = self.crossings.around(&mut self.mesh, seed, context.task.lines, bounds);
         for (gain, crossing) in found {
             let faces: usize = crossing.refills.iter().map(|r| r.faces.len()).sum();
             let sweeps = context.task.gate.options.refill_sweeps + (faces as f64).sqrt() as u32;
