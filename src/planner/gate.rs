@@ -163,7 +163,8 @@ pub struct Shape {
     corners: usize,
     /// Least scaled Jacobian of the quads, against the reference.
     jacobian: f64,
-    /// Quads that are turned over somewhere.
+    /// Quads that are turned over somewhere, and other faces that are, or that have no area to
+    /// speak of.
     inverted: u32,
     /// Σ over quads of what their scaled Jacobian lacks to [`POOR`].
     deficit: f64,
@@ -171,7 +172,11 @@ pub struct Shape {
 
 /// Quads below this scaled Jacobian must not become worse all together.
 const POOR: f64 = 0.4;
-/// Share of the normals at the corners of a quad that must agree on which side is out.
+/// A triangle with a corner of a lesser sine has hardly an area.
+const THIN: f64 = 0.2;
+/// A corner of a larger polygon with a lesser sine is reflex: that of a T-junction is straight.
+const REFLEX: f64 = -0.1;
+/// Share of the normals at the corners of a face that must agree on which side is out.
 const AGREED: f64 = 0.5;
 
 /// Judges edits; keeps its arrays from one to the next.
@@ -542,7 +547,7 @@ impl Shape {
             && self.jacobian >= other.jacobian.min(POOR)
     }
 
-    /// Adds a face. A quad against whose area most of `up`, the sum of the unit normals of the
+    /// Adds a face. One against whose area most of `up`, the sum of the unit normals of the
     /// reference at its corners, points is turned over; at a crease they do not agree enough to say.
     fn add(&mut self, points: &[Point], up: &Vector) {
         let n = points.len();
@@ -558,6 +563,7 @@ impl Shape {
         let over = normal.dot(up) < -AGREED * n as f64 * normal.norm();
         let along = if over { -1.0 } else { 1.0 };
         let mut least: f64 = 1.0;
+        let mut is_broken = false;
         let unit = normal.try_normalize(0.0).unwrap_or_else(Vector::zeros);
         for i in 0..n {
             let to_next = points[(i + 1) % n] - points[i];
@@ -572,13 +578,15 @@ impl Shape {
                 0.0
             };
             self.angles += (angle - ideal).abs();
-            if n == 4 {
-                let jacobian = if scale > 0.0 { along * sine } else { -1.0 };
-                least = least.min(jacobian);
+            let jacobian = if scale > 0.0 { along * sine } else { -1.0 };
+            match n {
+                4 => least = least.min(jacobian),
+                3 => is_broken |= jacobian < THIN,
+                _ => is_broken |= jacobian < REFLEX,
             }
         }
         self.jacobian = self.jacobian.min(least);
-        self.inverted += u32::from(least < 0.0);
+        self.inverted += u32::from(least < 0.0 || is_broken);
         self.deficit += (POOR - least).max(0.0);
     }
 }
