@@ -9,7 +9,9 @@ use super::cover::{Cover, fan_distance, gauges};
 use super::lines::{beside, sagitta};
 use crate::knobs::knobs;
 use crate::mesh::{Point, Vector};
-use crate::smooth::{Orientation, Region as Patch, RelaxOptions, fit_local, relax_local};
+use crate::smooth::{
+    Orientation, Region as Patch, RelaxOptions, broken_below, fit_local, relax_local,
+};
 use crate::sqrtcc::{Mark, QuadMesh, Vertex};
 use crate::surface::{Reference, SharpLines};
 use smallvec::SmallVec;
@@ -163,19 +165,14 @@ pub struct Shape {
     corners: usize,
     /// Least scaled Jacobian of the quads, against the reference.
     jacobian: f64,
-    /// Quads that are turned over somewhere, and other faces that are, or that have no area to
-    /// speak of.
-    inverted: u32,
+    /// Faces that are broken: see [`broken_below`].
+    broken: u32,
     /// Σ over quads of what their scaled Jacobian lacks to [`POOR`].
     deficit: f64,
 }
 
 /// Quads below this scaled Jacobian must not become worse all together.
 const POOR: f64 = 0.4;
-/// A triangle with a corner of a lesser sine has hardly an area.
-const THIN: f64 = 0.2;
-/// A corner of a larger polygon with a lesser sine is reflex: that of a T-junction is straight.
-const REFLEX: f64 = -0.1;
 /// Share of the normals at the corners of a face that must agree on which side is out.
 const AGREED: f64 = 0.5;
 
@@ -276,7 +273,7 @@ impl Gate {
                 return Err(Failure::Distance.into());
             }
         }
-        if after.inverted > before.inverted {
+        if after.broken > before.broken {
             return Err(Failure::Jacobian.into());
         }
         if self.bend(setting.lines) > self.bend.max(setting.rails.unwrap_or(0.0)) {
@@ -516,7 +513,7 @@ impl Gate {
 
 impl Default for Shape {
     fn default() -> Self {
-        Self { angles: 0.0, corners: 0, jacobian: 1.0, inverted: 0, deficit: 0.0 }
+        Self { angles: 0.0, corners: 0, jacobian: 1.0, broken: 0, deficit: 0.0 }
     }
 }
 
@@ -542,7 +539,7 @@ impl Shape {
     /// Whether there is nothing worse among the quads than in `other`, give or take a little.
     #[must_use]
     pub fn is_about_as_good_as(&self, other: &Self) -> bool {
-        self.inverted <= other.inverted
+        self.broken <= other.broken
             && self.deficit <= other.deficit + 0.02
             && self.jacobian >= other.jacobian.min(POOR)
     }
@@ -563,7 +560,6 @@ impl Shape {
         let over = normal.dot(up) < -AGREED * n as f64 * normal.norm();
         let along = if over { -1.0 } else { 1.0 };
         let mut least: f64 = 1.0;
-        let mut is_broken = false;
         let unit = normal.try_normalize(0.0).unwrap_or_else(Vector::zeros);
         for i in 0..n {
             let to_next = points[(i + 1) % n] - points[i];
@@ -579,15 +575,13 @@ impl Shape {
             };
             self.angles += (angle - ideal).abs();
             let jacobian = if scale > 0.0 { along * sine } else { -1.0 };
-            match n {
-                4 => least = least.min(jacobian),
-                3 => is_broken |= jacobian < THIN,
-                _ => is_broken |= jacobian < REFLEX,
-            }
+            least = least.min(jacobian);
         }
-        self.jacobian = self.jacobian.min(least);
-        self.inverted += u32::from(least < 0.0 || is_broken);
-        self.deficit += (POOR - least).max(0.0);
+        self.broken += u32::from(least < broken_below(n));
+        if n == 4 {
+            self.jacobian = self.jacobian.min(least);
+            self.deficit += (POOR - least).max(0.0);
+        }
     }
 }
 

@@ -1,8 +1,8 @@
 //! Relaxing the surroundings of an edit in place, for edits that nobody has to judge first.
 
 use super::RelaxOptions;
-use super::guard::scaled_jacobian;
 use super::region::{Orientation, Region, relax_local};
+use super::soundness::scaled_jacobian;
 use crate::mesh::Vector;
 use crate::sqrtcc::{QuadMesh, Vertex};
 use crate::surface::Reference;

@@ -1,10 +1,11 @@
-//! What smoothing must not do: leave the surface, or spoil a quad; and undoing it where it did.
+//! What smoothing must not do: leave the surface, or spoil a face; and undoing it where it did.
 //!
 //! The distance to the reference is measured both ways on fixed samples. Where a sample is
-//! farther than the budget, or a quad is worse than allowed, the vertices around go part of the
+//! farther than the budget, or a face is worse than allowed, the vertices around go part of the
 //! way back to where they were; after a few rounds they are back altogether.
 
 use super::kernel::Kernel;
+use super::soundness::soundness;
 use crate::mesh::{Point, PolyMesh, Vector};
 use crate::surface::{Deviation, Hit, Reference};
 use rayon::prelude::*;
@@ -12,9 +13,9 @@ use rayon::prelude::*;
 /// How far the mesh may be from the reference, both ways, in units of the file.
 pub type Budget = Deviation;
 
-/// A quad that was sound must keep at least this scaled Jacobian whatever the limit is.
+/// A face that was sound must stay at least as sound as this whatever the limit is.
 const SOUND: f64 = 0.02;
-/// What a poor quad may lose for the good of those around it.
+/// What a poor face may lose for the good of those around it.
 const SLIP: f64 = 0.05;
 
 /// The limits, and the samples that they are checked on.
@@ -30,9 +31,10 @@ pub(crate) struct Guard<'a> {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Finding {
     pub(crate) deviation: Deviation,
+    /// Least scaled Jacobian of the quads.
     pub(crate) least_jacobian: f64,
-    /// Scaled Jacobian of each face; 1 unless it is a quad.
-    jacobian: Vec<f64>,
+    /// [`soundness`] of each face.
+    soundness: Vec<f64>,
     /// Whether the face is turned over against the reference.
     flipped: Vec<bool>,
     /// Largest distance of a sample at the face, either way.
@@ -45,7 +47,7 @@ pub(crate) struct Finding {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Limits {
     pub(crate) budget: Budget,
-    /// Least scaled Jacobian of a quad that was not worse before.
+    /// Least [`soundness`] of a face that was not worse before.
     pub(crate) jacobian: f64,
 }
 
@@ -103,12 +105,13 @@ impl Guard<'_> {
     /// Measures a mesh whose faces have their centres at `centres` of the reference.
     pub(super) fn check_at(&self, mesh: &PolyMesh, centres: &[Hit], trace: &mut Trace) -> Finding {
         let n = mesh.face_count();
-        let jacobian: Vec<f64> =
-            (0..n).into_par_iter().map(|f| scaled_jacobian(mesh.points(), mesh.face(f))).collect();
+        let soundness: Vec<f64> =
+            (0..n).into_par_iter().map(|f| soundness(mesh.points(), mesh.face(f))).collect();
+        let quads = mesh.faces().zip(&soundness).filter(|(face, _)| face.len() == 4);
         let mut found = Finding {
             deviation: Deviation::default(),
-            least_jacobian: jacobian.iter().copied().fold(1.0, f64::min),
-            jacobian,
+            least_jacobian: quads.map(|(_, &s)| s).fold(1.0, f64::min),
+            soundness,
             flipped: vec![false; n],
             far: vec![0.0; n],
             load: vec![0.0; n],
@@ -174,11 +177,11 @@ impl Finding {
     /// to it since `start`.
     pub(crate) fn broken(&self, start: &Self, limits: &Limits) -> Vec<u32> {
         let floor = |f: usize| {
-            let before = start.jacobian[f];
+            let before = start.soundness[f];
             (limits.jacobian.min(before) - SLIP).max(before.min(SOUND))
         };
         let bad = |f: usize| {
-            self.jacobian[f] < floor(f)
+            self.soundness[f] < floor(f)
                 || self.flipped[f] && !start.flipped[f]
                 || self.far[f] > limits.budget.hausdorff
         };
@@ -265,26 +268,4 @@ impl Mending {
         };
         (0..self.keep.len()).into_par_iter().map(place).collect()
     }
-}
-
-/// Least scaled Jacobian of the corners of a quad: the sine of the angle there, negative where
-/// it turns against the quad's area vector. 1 for other polygons.
-pub(super) fn scaled_jacobian(points: &[Point], face: &[u32]) -> f64 {
-    let &[a, b, c, d] = face else { return 1.0 };
-    let [a, b, c, d] = [a, b, c, d].map(|v| points[v as usize]);
-    let normal = (c - a).cross(&(d - b)).try_normalize(0.0);
-    normal.map_or(-1.0, |unit| least_sine(points, face, &unit))
-}
-
-/// The least sine of a corner of a face, as seen along the unit vector `normal`; −1 where two
-/// corners coincide.
-pub(super) fn least_sine(points: &[Point], face: &[u32], normal: &Vector) -> f64 {
-    let n = face.len();
-    let p = |k: usize| points[face[k % n] as usize];
-    let sine = |k: usize| {
-        let (u, v) = (p(k + 1) - p(k), p(k + n - 1) - p(k));
-        let scale = u.norm() * v.norm();
-        if scale > 0.0 { u.cross(&v).dot(normal) / scale } else { -1.0 }
-    };
-    (0..n).map(sine).fold(f64::INFINITY, f64::min)
 }

@@ -17,6 +17,7 @@ mod global;
 mod guard;
 mod kernel;
 mod region;
+mod soundness;
 mod untangle;
 
 use crate::knobs::knobs;
@@ -29,6 +30,7 @@ pub use global::{SmoothReport, held_vertices, smooth};
 pub use guard::Budget;
 pub(crate) use guard::Guard;
 pub use region::{Orientation, Region, RelaxReport, fit_local, orientation, relax_local};
+pub(crate) use soundness::broken_below;
 
 knobs! {
     /// How faces pull their corners while edits are judged.

@@ -1,14 +1,14 @@
-//! Quads that smoothing leaves poor: their corners are moved until the worst of the faces around
+//! Faces that smoothing leaves poor: their corners are moved until the worst of the faces around
 //! each is as good as it can be.
 //!
-//! Shape fitting minimises a mean and may leave single quads folded, most of all where what is
-//! held leaves little room. Here every free corner of a poor quad, and of the faces around it,
+//! Shape fitting minimises a mean and may leave single faces folded, most of all where what is
+//! held leaves little room. Here every free corner of a poor face, and of the faces around it,
 //! tries places around its own on the reference and takes the one that lifts the least scaled
 //! Jacobian of its faces (a compass search, as in *smart* Laplacian smoothing: Freitag 1997);
 //! nothing that is good is touched.
 
-use super::guard::{least_sine, scaled_jacobian};
 use super::kernel::Kernel;
+use super::soundness::{area_vector, broken_below, least_sine, soundness};
 use crate::mesh::{Point, PolyMesh, Vector};
 use crate::surface::Reference;
 use rustc_hash::FxHashMap;
@@ -24,8 +24,8 @@ const PASSES: usize = 24;
 /// Less than this is no progress.
 const PROGRESS: f64 = 1e-4;
 
-/// Improves the quads of `mesh` whose scaled Jacobian is less than `least`; whether anything has
-/// moved. `kernel` knows what is held, and which side is out. O(poor quads).
+/// Improves the faces of `mesh` that are less sound than `least`; whether anything has moved.
+/// `kernel` knows what is held, and which side is out. O(poor faces).
 pub(super) fn untangle(
     mesh: &mut PolyMesh,
     kernel: &Kernel,
@@ -33,10 +33,8 @@ pub(super) fn untangle(
     least: f64,
 ) -> bool {
     let poor = mesh.faces().zip(0..);
-    let poor: Vec<u32> = poor
-        .filter(|(face, _)| scaled_jacobian(mesh.points(), face) < least)
-        .map(|(_, f)| f)
-        .collect();
+    let poor: Vec<u32> =
+        poor.filter(|(face, _)| soundness(mesh.points(), face) < least).map(|(_, f)| f).collect();
     if poor.is_empty() {
         return false;
     }
@@ -61,7 +59,7 @@ pub(super) fn untangle(
     moved
 }
 
-/// The corners of poor quads and of the faces around them, each with its faces.
+/// The corners of poor faces and of the faces around them, each with its faces.
 struct Surroundings {
     vertices: Vec<(u32, Vec<u32>)>,
 }
@@ -146,22 +144,22 @@ impl Site<'_> {
     }
 
     /// The least sine of a corner among the triangles and quads at the vertex, each turned as its
-    /// area is; less by two if it is turned over against `normal`.
+    /// area is, less by two if it is turned over against `normal`; or what a larger polygon lacks to
+    /// be sound.
     fn worst(&self, points: &[Point], normal: &Vector) -> f64 {
-        let small = |&&f: &&u32| self.mesh.face(f as usize).len() <= 4;
         let quality = |&f: &u32| {
             let face = self.mesh.face(f as usize);
-            let p = |k: usize| points[face[k] as usize];
-            let area = if face.len() == 4 {
-                (p(2) - p(0)).cross(&(p(3) - p(1)))
-            } else {
-                (p(1) - p(0)).cross(&(p(2) - p(0)))
-            };
+            let area = area_vector(points, face);
             let along = if area.dot(normal) < 0.0 { -2.0 } else { 0.0 };
             let Some(unit) = area.try_normalize(0.0) else { return -2.0 };
-            along + least_sine(points, face, &unit)
+            let sine = along + least_sine(points, face, &unit);
+            match face.len() {
+                ..=4 => sine,
+                n if sine < broken_below(n) => sine - broken_below(n),
+                _ => f64::INFINITY,
+            }
         };
-        self.faces.iter().filter(small).map(quality).fold(f64::INFINITY, f64::min)
+        self.faces.iter().map(quality).fold(f64::INFINITY, f64::min)
     }
 
     /// The other corners of the faces at the vertex; those across an edge twice.
