@@ -149,7 +149,7 @@ impl<'a> Work<'a> {
         let side = vote(mesh, reference, centres.iter().enumerate());
         let (stress, project_every) = (options.stress, options.project_every);
         let relax = RelaxOptions { stress, project_every, ..relax.clone() };
-        let samples = mesh.vertex_count().clamp(20_000, 200_000);
+        let samples = (3 * mesh.vertex_count()).clamp(20_000, 200_000);
         let places = watched(reference, samples);
         let guard = Guard { reference, places, samples, sign: side.sign() };
         let start = guard.check_at(mesh, &centres, &mut trace);
