@@ -7,7 +7,7 @@
 
 use super::{OptimizeOptions, Options};
 use crate::mesh::{Point, PolyMesh, Vector};
-use crate::smooth::{Budget, Guard, Shape, limits, orientation, polygon, rectangle, watched};
+use crate::smooth::{Budget, Guard, Shape, limits, orientation, polygon, rectangle};
 use crate::surface::{Hit, Reference};
 use crate::watch::{Phase, Watch};
 use rayon::prelude::*;
@@ -32,9 +32,8 @@ pub fn flatten(
     options: Options,
     watch: &dyn Watch,
 ) -> Vec<Point> {
-    let samples = mesh.vertex_count().clamp(20_000, 200_000);
     let sign = orientation(mesh, reference).sign();
-    let guard = Guard { reference, places: watched(reference, samples), samples, sign };
+    let guard = Guard::new(reference, mesh.vertex_count(), sign);
     let start = guard.check(mesh);
     let limits = limits(&start, options.smooth, Some(allowed), reference.diagonal());
     let OptimizeOptions { iterations, rounds, .. } = *options.optimize;

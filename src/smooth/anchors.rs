@@ -13,7 +13,7 @@ const PULL: f64 = 1.0;
 
 /// Places of the reference that are watched: about `count` by area, and at most twice as many of
 /// its vertices, among which are the tips of horns. O(triangles).
-pub(crate) fn watched(reference: &Reference, count: usize) -> Vec<Point> {
+pub(super) fn watched(reference: &Reference, count: usize) -> Vec<Point> {
     let mut places = reference.samples(count);
     places.extend(spread(reference.used_points(), 2 * count));
     places

@@ -2,7 +2,7 @@
 
 use fixedbitset::FixedBitSet;
 
-use super::anchors::{Watched, pull, watched};
+use super::anchors::{Watched, pull};
 use super::guard::{Budget, Finding, Guard, Limits, Mending, Trace};
 use super::kernel::Setting;
 use super::region::{Orientation, Region, vote};
@@ -149,9 +149,7 @@ impl<'a> Work<'a> {
         let side = vote(mesh, reference, centres.iter().enumerate());
         let (stress, project_every) = (options.stress, options.project_every);
         let relax = RelaxOptions { stress, project_every, ..relax.clone() };
-        let samples = (3 * mesh.vertex_count()).clamp(20_000, 200_000);
-        let places = watched(reference, samples);
-        let guard = Guard { reference, places, samples, sign: side.sign() };
+        let guard = Guard::new(reference, mesh.vertex_count(), side.sign());
         let start = guard.check_at(mesh, &centres, &mut trace);
         drop(centres);
         let limits = limits(&start, options, budget, reference.diagonal());

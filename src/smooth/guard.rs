@@ -4,6 +4,7 @@
 //! farther than the budget, or a face is worse than allowed, the vertices around go part of the
 //! way back to where they were; after a few rounds they are back altogether.
 
+use super::anchors::watched;
 use super::kernel::Kernel;
 use super::soundness::soundness;
 use crate::mesh::{Point, PolyMesh, Vector};
@@ -17,14 +18,19 @@ pub type Budget = Deviation;
 const SOUND: f64 = 0.02;
 /// What a poor face may lose for the good of those around it.
 const SLIP: f64 = 0.05;
+/// Samples of each surface, beside the vertices of the reference, for each vertex of the mesh: with
+/// one, a ridge can be lost between them.
+const SAMPLES_PER_VERTEX: usize = 3;
+/// The fewest and the most samples.
+const SAMPLES: (usize, usize) = (20_000, 200_000);
 
 /// The limits, and the samples that they are checked on.
 pub(crate) struct Guard<'a> {
-    pub(crate) reference: &'a Reference,
-    pub(crate) places: Vec<Point>,
-    pub(crate) samples: usize,
+    pub(super) reference: &'a Reference,
+    places: Vec<Point>,
+    samples: usize,
     /// 1 if the mesh is oriented like the reference, else −1.
-    pub(crate) sign: f64,
+    sign: f64,
 }
 
 /// The state of a mesh, face by face.
@@ -87,7 +93,13 @@ impl Trace {
     }
 }
 
-impl Guard<'_> {
+impl<'a> Guard<'a> {
+    /// For a mesh of so many vertices, whose side of the reference `sign` tells. O(triangles).
+    pub(crate) fn new(reference: &'a Reference, vertices: usize, sign: f64) -> Self {
+        let samples = (SAMPLES_PER_VERTEX * vertices).clamp(SAMPLES.0, SAMPLES.1);
+        Self { reference, places: watched(reference, samples), samples, sign }
+    }
+
     /// Measures `mesh`. O(n log n), parallel.
     pub(crate) fn check(&self, mesh: &PolyMesh) -> Finding {
         let mut trace = Trace::new(mesh);

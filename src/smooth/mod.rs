@@ -22,7 +22,6 @@ mod untangle;
 
 use crate::knobs::knobs;
 
-pub(crate) use anchors::watched;
 pub use around::Surroundings;
 pub(crate) use fit::{Shape, polygon, rectangle};
 pub(crate) use global::limits;
