@@ -10,7 +10,7 @@ use super::lines::{beside, sagitta};
 use crate::knobs::knobs;
 use crate::mesh::{Point, Vector};
 use crate::smooth::{
-    Orientation, Region as Patch, RelaxOptions, broken_below, fit_local, relax_local,
+    Orientation, Region as Patch, RelaxOptions, broken_below, fit_local, relax_local, twice_area,
 };
 use crate::sqrtcc::{Mark, QuadMesh, Vertex};
 use crate::surface::{Reference, SharpLines};
@@ -536,7 +536,7 @@ impl Shape {
         self.jacobian
     }
 
-    /// Whether there is nothing worse among the quads than in `other`, give or take a little.
+    /// Whether no more faces are broken than in `other`, and no quads are worse, give or take a little.
     #[must_use]
     pub fn is_about_as_good_as(&self, other: &Self) -> bool {
         self.broken <= other.broken
@@ -550,13 +550,7 @@ impl Shape {
         let n = points.len();
         self.corners += n;
         let ideal = 180.0 - 360.0 / n as f64;
-        let normal = if n == 4 {
-            (points[2] - points[0]).cross(&(points[3] - points[1]))
-        } else {
-            (1..n - 1)
-                .map(|i| (points[i] - points[0]).cross(&(points[i + 1] - points[0])))
-                .sum::<Vector>()
-        };
+        let normal = twice_area(n, |i| points[i]);
         let over = normal.dot(up) < -AGREED * n as f64 * normal.norm();
         let along = if over { -1.0 } else { 1.0 };
         let mut least: f64 = 1.0;

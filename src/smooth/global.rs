@@ -241,6 +241,7 @@ impl<'a> Work<'a> {
 mod tests {
     use super::*;
     use crate::mesh::shapes;
+    use crate::smooth::soundness::soundness;
     use crate::surface::trial;
     use crate::watch::Silent;
 
@@ -317,6 +318,29 @@ mod tests {
         let (_, report) = smooth(&mesh, &held, &reference, (&options, &relax), None, &Silent);
         assert!(report.least_jacobian_before < 0.0, "{report:?}");
         assert!(report.least_jacobian_after >= options.least_jacobian, "{report:?}");
+    }
+
+    #[test]
+    fn a_pentagon_that_is_turned_inside_out_is_mended() {
+        let grid = shapes::grid(6, 6);
+        let reference = Reference::new(&grid).unwrap();
+        let mut faces: Vec<Vec<u32>> = grid.faces().map(<[u32]>::to_vec).collect();
+        // One quad loses its corner 24 to the next one, which becomes a pentagon.
+        (faces[14], faces[15]) = (vec![16, 17, 23], vec![17, 18, 25, 24, 23]);
+        let mut points = grid.points().to_vec();
+        points[24] = Point::new(3.6, 2.3, 0.0);
+        let mesh = PolyMesh::new(points, &faces).unwrap();
+        let worst = |points: &[Point]| {
+            mesh.faces().map(|f| soundness(points, f)).fold(f64::INFINITY, f64::min)
+        };
+        assert!(worst(mesh.points()) < 0.0, "a reflex corner");
+        let topology = Topology::new(&mesh);
+        let none = FixedBitSet::with_capacity(mesh.corner_count());
+        let held = held_vertices(&mesh, &topology, &none);
+        let options = SmoothOptions { iterations: 0, ..SmoothOptions::default() };
+        let relax = RelaxOptions::default();
+        let (points, _) = smooth(&mesh, &held, &reference, (&options, &relax), None, &Silent);
+        assert!(worst(&points) > 0.0, "{}", worst(&points));
     }
 
     #[test]

@@ -29,7 +29,7 @@ pub use global::{SmoothReport, held_vertices, smooth};
 pub use guard::Budget;
 pub(crate) use guard::Guard;
 pub use region::{Orientation, Region, RelaxReport, fit_local, orientation, relax_local};
-pub(crate) use soundness::broken_below;
+pub(crate) use soundness::{broken_below, twice_area};
 
 knobs! {
     /// How faces pull their corners while edits are judged.

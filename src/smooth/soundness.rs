@@ -22,19 +22,24 @@ pub(super) fn soundness(points: &[Point], face: &[u32]) -> f64 {
 }
 
 /// The least sine of a corner of a face, negative where it turns against the face's area vector;
-/// −1 if that is zero or two corners coincide.
+/// −1 if that is zero or two corners coincide. Of a quad that is the scaled Jacobian.
 pub(super) fn scaled_jacobian(points: &[Point], face: &[u32]) -> f64 {
-    let unit = area_vector(points, face).try_normalize(0.0);
+    let unit = corners_area(points, face).try_normalize(0.0);
     unit.map_or(-1.0, |unit| least_sine(points, face, &unit))
 }
 
-/// A normal of a face that is as long as twice its area.
-pub(super) fn area_vector(points: &[Point], face: &[u32]) -> Vector {
-    let p = |k: usize| points[face[k] as usize];
-    if face.len() == 4 {
-        return (p(2) - p(0)).cross(&(p(3) - p(1)));
+/// [`twice_area`] of a face by the numbers of its corners.
+pub(super) fn corners_area(points: &[Point], face: &[u32]) -> Vector {
+    twice_area(face.len(), |k| points[face[k] as usize])
+}
+
+/// A normal that is as long as twice the area of a face with so many corners, which `at` gives.
+#[inline]
+pub(crate) fn twice_area(corners: usize, at: impl Fn(usize) -> Point) -> Vector {
+    if corners == 4 {
+        return (at(2) - at(0)).cross(&(at(3) - at(1)));
     }
-    (2..face.len()).map(|k| (p(k - 1) - p(0)).cross(&(p(k) - p(0)))).sum()
+    (2..corners).map(|k| (at(k - 1) - at(0)).cross(&(at(k) - at(0)))).sum()
 }
 
 /// The least sine of a corner of a face, as seen along the unit vector `normal`; −1 where two

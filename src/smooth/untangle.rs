@@ -8,7 +8,7 @@
 //! nothing that is good is touched.
 
 use super::kernel::Kernel;
-use super::soundness::{area_vector, broken_below, least_sine, soundness};
+use super::soundness::{broken_below, corners_area, least_sine, soundness};
 use crate::mesh::{Point, PolyMesh, Vector};
 use crate::surface::Reference;
 use rustc_hash::FxHashMap;
@@ -149,7 +149,7 @@ impl Site<'_> {
     fn worst(&self, points: &[Point], normal: &Vector) -> f64 {
         let quality = |&f: &u32| {
             let face = self.mesh.face(f as usize);
-            let area = area_vector(points, face);
+            let area = corners_area(points, face);
             let along = if area.dot(normal) < 0.0 { -2.0 } else { 0.0 };
             let Some(unit) = area.try_normalize(0.0) else { return -2.0 };
             let sine = along + least_sine(points, face, &unit);
