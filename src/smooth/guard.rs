@@ -57,12 +57,15 @@ pub(crate) struct Limits {
     pub(crate) jacobian: f64,
 }
 
-/// A mesh in work as a surface, and the triangles that were found when it was last measured: they
-/// are near those that will be found next time.
-#[derive(Debug)]
+/// A mesh in work as a surface, where it is sampled, and the triangles that were found when it was
+/// last measured: they are near those that will be found next time.
+#[derive(Debug, Default)]
 pub(super) struct Trace {
     /// None if no face has an area.
     pub(super) surface: Option<Reference>,
+    /// Triangle of the surface that each sample of the mesh is on: what has moved and come back is
+    /// measured as it was.
+    sampled: Vec<u32>,
     /// Triangle of the reference at the centre of each face, and at each sample of the mesh.
     centres: Vec<u32>,
     samples: Vec<u32>,
@@ -73,14 +76,16 @@ pub(super) struct Trace {
 impl Trace {
     /// Nothing is known yet of `mesh` but its surface.
     pub(super) fn new(mesh: &PolyMesh) -> Self {
-        let surface = Reference::plain(mesh).ok();
-        Self { surface, centres: Vec::new(), samples: Vec::new(), places: Vec::new() }
+        Self { surface: Reference::plain(mesh).ok(), ..Self::default() }
     }
 
     /// Follows the mesh to where its points are now.
     pub(super) fn follow(&mut self, mesh: &PolyMesh) {
-        let surface = self.surface.take();
-        self.surface = surface.map_or_else(|| Reference::plain(mesh), |s| s.moved(mesh)).ok();
+        self.surface = self.surface.take().and_then(|surface| surface.moved(mesh));
+        if self.surface.is_none() {
+            self.surface = Reference::plain(mesh).ok();
+            self.sampled.clear();
+        }
     }
 
     /// Where on the reference the centre of each face is.
@@ -129,7 +134,11 @@ impl<'a> Guard<'a> {
             load: vec![0.0; n],
         };
         if let Some(surface) = trace.surface.take() {
-            let away = self.away(&surface, &mut trace.samples, &mut found);
+            if trace.sampled.is_empty() {
+                trace.sampled = surface.sampled(self.samples);
+            }
+            let sampled = (&trace.sampled[..], &mut trace.samples);
+            let away = self.away(&surface, sampled, &mut found);
             let back = self.back(&surface, &mut trace.places, &mut found);
             self.centres(mesh, centres, &mut found);
             let hausdorff = found.far.iter().copied().fold(0.0, f64::max);
@@ -140,13 +149,16 @@ impl<'a> Guard<'a> {
     }
 
     /// Mean square distance of samples of the mesh to the reference.
-    fn away(&self, surface: &Reference, near: &mut Vec<u32>, found: &mut Finding) -> f64 {
-        let own = surface.sample_places(self.samples);
-        let queries: Vec<Point> = own.iter().map(|s| s.1).collect();
-        let face = |i: usize| surface.faces()[own[i].0 as usize];
-        let share = 1.0 / own.len().max(1) as f64;
+    fn away(
+        &self,
+        surface: &Reference,
+        (sampled, near): (&[u32], &mut Vec<u32>),
+        found: &mut Finding,
+    ) -> f64 {
+        let face = |i: usize| surface.faces()[sampled[i] as usize];
+        let share = 1.0 / sampled.len().max(1) as f64;
         let mut sum = 0.0;
-        self.reference.closest_each(&queries, near, |i, hit| {
+        self.reference.closest_each(&surface.samples_on(sampled), near, |i, hit| {
             sum += found.note(face(i), hit.distance, share);
         });
         sum
@@ -279,5 +291,32 @@ impl Mending {
             reference.closest_facing(&between, &normal, vertex.last, reach).point
         };
         (0..self.keep.len()).into_par_iter().map(place).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::shapes;
+
+    #[test]
+    fn what_has_not_moved_is_measured_as_it_was() {
+        let flat = shapes::grid(20, 20);
+        let reference = Reference::new(&flat).unwrap();
+        let mut mesh = flat.clone();
+        let with = |place: &dyn Fn(&Point) -> Point| flat.points().iter().map(place).collect();
+        let wave = |p: &Point| 0.2 * (p.x + 2.0 * p.y).sin();
+        mesh.set_points(with(&|p| p + Vector::z() * wave(p)));
+        let guard = Guard::new(&reference, mesh.vertex_count(), 1.0);
+        let mut trace = Trace::new(&mesh);
+        let start = guard.check_again(&mesh, &mut trace);
+        let stretch = |p: &Point| if p.y > 12.0 { p.y - 12.0 } else { 0.0 };
+        mesh.set_points(with(&|p| p + Vector::z() * wave(p) + Vector::y() * stretch(p)));
+        let found = guard.check_again(&mesh, &mut trace);
+        let changed = |f: &usize| (start.far[*f] - found.far[*f]).abs() > 1e-12;
+        let changed: Vec<usize> = (0..mesh.face_count()).filter(changed).collect();
+        let stays = |f: usize| mesh.face(f).iter().all(|&v| flat.points()[v as usize].y < 11.0);
+        assert!(changed.len() > 50, "{changed:?}");
+        assert!(!changed.iter().any(|&f| stays(f)), "{changed:?}");
     }
 }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 use super::features::{Crease, border_edges, creases};
-use super::samples::{sample_places, sample_triangles};
+use super::samples::{places, sample_triangles, sampled};
 use super::tree::{Best, CLOSEST, Tree};
 use super::triangulation::{Triangulation, triangulate};
 use crate::mesh::{NONE, Point, PolyMesh, Topology, Vector};
@@ -97,16 +97,16 @@ impl Reference {
         Ok(surface)
     }
 
-    /// The surface of `mesh`, whose faces are those of this surface in other places. Triangles keep
-    /// their numbers as long as all have an area. O(n), parallel.
-    pub fn moved(mut self, mesh: &PolyMesh) -> Result<Self, SurfaceError> {
+    /// The surface of `mesh`, whose faces are those of this surface in other places, with triangles of
+    /// the same numbers; none if a triangle has got or lost an area. O(n), parallel.
+    #[must_use]
+    pub fn moved(mut self, mesh: &PolyMesh) -> Option<Self> {
         let Triangulation { points, triangles, .. } = triangulate(mesh);
         let is_solid = solid(&points, mesh);
         let count = triangles.par_iter().filter(|t| is_solid(t)).count();
         let stays = |&s: &u32| triangles.get(s as usize).is_some_and(&is_solid);
         if count != self.source.len() || !self.source.par_iter().all(stays) {
-            drop(self);
-            return Self::plain(mesh);
+            return None;
         }
         drop(is_solid);
         let source = &self.source;
@@ -114,7 +114,7 @@ impl Reference {
         self.normals = Vec::new();
         self.diagonal = mesh.diagonal();
         self.measure_area();
-        Ok(self)
+        Some(self)
     }
 
     /// Finds the area of the triangles as they are.
@@ -303,10 +303,17 @@ impl Reference {
         sample_triangles(self.points(), self.triangles(), count)
     }
 
-    /// The same points, each with the triangle that it is on.
+    /// The triangle that each of those points is on.
     #[must_use]
-    pub fn sample_places(&self, count: usize) -> Vec<(u32, Point)> {
-        sample_places(self.points(), self.triangles(), count)
+    pub fn sampled(&self, count: usize) -> Vec<u32> {
+        sampled(self.points(), self.triangles(), count)
+    }
+
+    /// Where the samples on the triangles `sampled` are now: [`Self::samples`], as long as nothing has
+    /// [moved](Self::moved).
+    #[must_use]
+    pub fn samples_on(&self, sampled: &[u32]) -> Vec<Point> {
+        places(self.points(), self.triangles(), sampled)
     }
 
     fn start(&self, query: &Point, last: u32) -> Best {
@@ -376,13 +383,14 @@ mod tests {
             assert!((a.distance - b.distance).abs() < 1e-14, "{a:?} {b:?}");
         }
         assert!((moved.area() - new.area()).abs() < 1e-12);
-        // A face that has lost its area is dropped, and numbers are new.
+        let samples = moved.samples_on(&still.sampled(500));
+        assert!(samples.iter().all(|p| new.closest(p).distance < 1e-14), "samples go along");
+        // A face that has lost its area has no triangles.
         let mut points = mesh.points().to_vec();
         let [a, b, c] = [0, 1, 2].map(|k| mesh.face(0)[k] as usize);
         (points[b], points[c]) = (points[a], points[a]);
         mesh.set_points(points);
-        let flat = moved.moved(&mesh).unwrap();
-        assert_eq!(flat.triangles(), Reference::plain(&mesh).unwrap().triangles());
+        assert!(moved.moved(&mesh).is_none());
     }
 
     #[test]

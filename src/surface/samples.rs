@@ -12,32 +12,33 @@ use rayon::prelude::*;
 /// O(triangles + count).
 #[must_use]
 pub fn sample_triangles(points: &[Point], triangles: &[[u32; 3]], count: usize) -> Vec<Point> {
-    sample_places(points, triangles, count).into_iter().map(|s| s.1).collect()
+    places(points, triangles, &sampled(points, triangles, count))
 }
 
-/// The same samples, each with the triangle that it is on.
-pub(super) fn sample_places(
-    points: &[Point],
-    triangles: &[[u32; 3]],
-    count: usize,
-) -> Vec<(u32, Point)> {
-    let corners = |t: &[u32; 3]| t.map(|v| points[v as usize]);
+/// The number of the triangle that each of those samples is on, ascending.
+pub(super) fn sampled(points: &[Point], triangles: &[[u32; 3]], count: usize) -> Vec<u32> {
     let area = |t: &[u32; 3]| {
-        let [a, b, c] = corners(t);
+        let [a, b, c] = t.map(|v| points[v as usize]);
         (b - a).cross(&(c - a)).norm() * 0.5
     };
     let areas: Vec<f64> = triangles.par_iter().map(area).collect();
     let total: f64 = areas.iter().sum();
     let (mut out, mut done) = (Vec::with_capacity(count), 0.0);
-    for (number, (t, area)) in triangles.iter().zip(areas).enumerate() {
+    for (area, number) in areas.into_iter().zip(0..) {
         done += area;
         // Sample i stands in the middle of its share of the area, (i + 1/2) / count.
         while out.len() < count && (out.len() as f64 + 0.5) * total < done * count as f64 {
-            let place = place_in_triangle(out.len(), &corners(t));
-            out.push((number as u32, place));
+            out.push(number);
         }
     }
     out
+}
+
+/// Where samples are that are on the triangles of such numbers.
+pub(super) fn places(points: &[Point], triangles: &[[u32; 3]], sampled: &[u32]) -> Vec<Point> {
+    let corners = |t: u32| triangles[t as usize].map(|v| points[v as usize]);
+    let place = |(i, &t): (usize, &u32)| place_in_triangle(i, &corners(t));
+    sampled.par_iter().enumerate().map(place).collect()
 }
 
 /// Sample number `i` put at a place of the triangle that looks random.
