@@ -461,37 +461,40 @@ impl Kernel {
         for f in 0..self.face_count() {
             face_of[self.offsets[f] as usize..self.offsets[f + 1] as usize].fill(f as u32);
         }
-        let mut vertices = std::mem::take(&mut self.vertices);
-        for (v, vertex) in vertices.iter_mut().enumerate().filter(|(_, v)| !v.held) {
-            let star = self.star(v);
-            let sum: Vector = star.iter().map(|&c| gaps[face_of[c as usize] as usize]).sum();
-            let shift = vertex.normal.dot(&sum) / star.len().max(1) as f64;
-            vertex.point += vertex.normal * (share * 2.0 / 3.0 * shift);
-        }
-        self.vertices = vertices;
+        self.each_vertex(setting.parallel, |kernel, v, vertex| {
+            if !vertex.held {
+                let star = kernel.star(v);
+                let sum: Vector = star.iter().map(|&c| gaps[face_of[c as usize] as usize]).sum();
+                let shift = vertex.normal.dot(&sum) / star.len().max(1) as f64;
+                vertex.point += vertex.normal * (share * 2.0 / 3.0 * shift);
+            }
+        });
     }
 
     /// Gives every vertex its normal and triangle of the reference without moving it. The mean
     /// normal of its faces says on which side of a thin sheet it is, unless it lies on the
     /// triangle that it came with.
     pub(super) fn find_normals(&mut self, reference: &Reference, setting: &Setting) {
-        let mut vertices = std::mem::take(&mut self.vertices);
-        let own = |v: usize| -> Vector {
-            let spoke = |&c: &u32| self.corner_normal(c);
-            self.star(v).iter().map(spoke).sum::<Vector>() * setting.sign
-        };
         let reach = (2.0 * self.mean_size).sqrt();
-        let find = |(v, vertex): (usize, &mut Vertex)| {
+        self.each_vertex(setting.parallel, |kernel, v, vertex| {
             if !reference.is_on(&vertex.point, vertex.last, DRIFT * reach) {
-                let hit = reference.closest_facing(&vertex.point, &own(v), vertex.last, reach);
+                let spoke = |&c: &u32| kernel.corner_normal(c);
+                let own = kernel.star(v).iter().map(spoke).sum::<Vector>() * setting.sign;
+                let hit = reference.closest_facing(&vertex.point, &own, vertex.last, reach);
                 vertex.last = hit.triangle;
             }
             vertex.normal = reference.normal(vertex.last) * setting.sign;
-        };
-        if setting.parallel {
-            vertices.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(find);
+        });
+    }
+
+    /// Changes each vertex by its number and all but the vertices.
+    fn each_vertex(&mut self, parallel: bool, change: impl Fn(&Self, usize, &mut Vertex) + Sync) {
+        let mut vertices = std::mem::take(&mut self.vertices);
+        let change = |(v, vertex): (usize, &mut Vertex)| change(self, v, vertex);
+        if parallel {
+            vertices.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(change);
         } else {
-            vertices.iter_mut().enumerate().for_each(find);
+            vertices.iter_mut().enumerate().for_each(change);
         }
         self.vertices = vertices;
     }

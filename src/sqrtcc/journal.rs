@@ -3,6 +3,7 @@
 
 use super::{Quad, QuadMesh, Vertex};
 use crate::mesh::Point;
+use rayon::prelude::*;
 
 /// Entries for which memory is kept when they are forgotten.
 const KEPT: usize = 1 << 16;
@@ -109,7 +110,7 @@ impl QuadMesh {
             }
         }
         for list in [&mut changes.vertices, &mut changes.quads] {
-            list.sort_unstable();
+            list.par_sort_unstable();
             list.dedup();
         }
         changes
