@@ -7,7 +7,7 @@
 
 use super::{OptimizeOptions, Options};
 use crate::mesh::{Point, PolyMesh, Vector};
-use crate::smooth::{Budget, Guard, Shape, limits, orientation, polygon, rectangle};
+use crate::smooth::{Budget, Guard, Shape, Trace, limits, orientation, polygon, rectangle};
 use crate::surface::{Hit, Reference};
 use crate::watch::{Phase, Watch};
 use rayon::prelude::*;
@@ -34,7 +34,8 @@ pub fn flatten(
 ) -> Vec<Point> {
     let sign = orientation(mesh, reference).sign();
     let guard = Guard::new(reference, mesh.vertex_count(), sign);
-    let start = guard.check(mesh);
+    let mut trace = Trace::default();
+    let start = guard.check(mesh, &mut trace);
     let limits = limits(&start, options.smooth, Some(allowed), reference.diagonal());
     let OptimizeOptions { iterations, rounds, .. } = *options.optimize;
     let mut solver = Solver::new(mesh, held, reference, options);
@@ -42,7 +43,7 @@ pub fn flatten(
     for round in 0..=rounds {
         solver.run(if round == 0 { iterations } else { iterations / 8 }, watch);
         moved.set_points(solver.points.clone());
-        let broken = guard.check(&moved).broken(&start, &limits);
+        let broken = guard.check(&moved, &mut trace).broken(&start, &limits);
         if broken.is_empty() {
             return solver.points;
         }

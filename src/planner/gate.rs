@@ -536,7 +536,8 @@ impl Shape {
         self.jacobian
     }
 
-    /// Whether no more faces are broken than in `other`, and no quads are worse, give or take a little.
+    /// Whether no more faces are broken than in `other`, and no quads are worse, give or take a
+    /// little.
     #[must_use]
     pub fn is_about_as_good_as(&self, other: &Self) -> bool {
         self.broken <= other.broken

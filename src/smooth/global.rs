@@ -144,7 +144,8 @@ impl<'a> Work<'a> {
         (options, relax): (&'a SmoothOptions, &RelaxOptions),
         budget: Option<Budget>,
     ) -> Self {
-        let mut trace = Trace::new(mesh);
+        let mut trace = Trace::default();
+        trace.follow(mesh);
         let centres = trace.at_centres(mesh, reference);
         let side = vote(mesh, reference, centres.iter().enumerate());
         let (stress, project_every) = (options.stress, options.project_every);
@@ -216,7 +217,7 @@ impl<'a> Work<'a> {
         let kernel = &self.region.kernel;
         let smoothed = self.mesh.points().to_vec();
         let mut mending = Mending::new(self.original.points().to_vec(), smoothed);
-        let mut found = self.guard.check_again(&self.mesh, &mut self.trace);
+        let mut found = self.guard.check(&self.mesh, &mut self.trace);
         let mut broken = found.broken(&self.start, &self.limits);
         for _ in 0..self.options.mend_rounds {
             if broken.is_empty() {
@@ -225,7 +226,7 @@ impl<'a> Work<'a> {
             mending.lower(&self.mesh, &broken);
             let points = mending.blend(kernel, self.guard.reference, self.setting.sign);
             self.mesh.set_points(points);
-            found = self.guard.check_again(&self.mesh, &mut self.trace);
+            found = self.guard.check(&self.mesh, &mut self.trace);
             broken = found.broken(&self.start, &self.limits);
         }
         if broken.is_empty() {

@@ -58,9 +58,9 @@ pub(crate) struct Limits {
 }
 
 /// A mesh in work as a surface, where it is sampled, and the triangles that were found when it was
-/// last measured: they are near those that will be found next time.
+/// last measured: they are near those that will be found next time. Empty until it follows a mesh.
 #[derive(Debug, Default)]
-pub(super) struct Trace {
+pub(crate) struct Trace {
     /// None if no face has an area.
     pub(super) surface: Option<Reference>,
     /// Triangle of the surface that each sample of the mesh is on: what has moved and come back is
@@ -74,11 +74,6 @@ pub(super) struct Trace {
 }
 
 impl Trace {
-    /// Nothing is known yet of `mesh` but its surface.
-    pub(super) fn new(mesh: &PolyMesh) -> Self {
-        Self { surface: Reference::plain(mesh).ok(), ..Self::default() }
-    }
-
     /// Follows the mesh to where its points are now.
     pub(super) fn follow(&mut self, mesh: &PolyMesh) {
         self.surface = self.surface.take().and_then(|surface| surface.moved(mesh));
@@ -105,15 +100,8 @@ impl<'a> Guard<'a> {
         Self { reference, places: watched(reference, samples), samples, sign }
     }
 
-    /// Measures `mesh`. O(n log n), parallel.
-    pub(crate) fn check(&self, mesh: &PolyMesh) -> Finding {
-        let mut trace = Trace::new(mesh);
-        let centres = trace.at_centres(mesh, self.reference);
-        self.check_at(mesh, &centres, &mut trace)
-    }
-
-    /// Measures `mesh`, which may have moved since `trace` followed it last.
-    pub(super) fn check_again(&self, mesh: &PolyMesh, trace: &mut Trace) -> Finding {
+    /// Measures `mesh`, which may have moved since `trace` followed it last. O(n log n), parallel.
+    pub(crate) fn check(&self, mesh: &PolyMesh, trace: &mut Trace) -> Finding {
         trace.follow(mesh);
         let centres = trace.at_centres(mesh, self.reference);
         self.check_at(mesh, &centres, trace)
@@ -308,11 +296,11 @@ mod tests {
         let wave = |p: &Point| 0.2 * (p.x + 2.0 * p.y).sin();
         mesh.set_points(with(&|p| p + Vector::z() * wave(p)));
         let guard = Guard::new(&reference, mesh.vertex_count(), 1.0);
-        let mut trace = Trace::new(&mesh);
-        let start = guard.check_again(&mesh, &mut trace);
+        let mut trace = Trace::default();
+        let start = guard.check(&mesh, &mut trace);
         let stretch = |p: &Point| if p.y > 12.0 { p.y - 12.0 } else { 0.0 };
         mesh.set_points(with(&|p| p + Vector::z() * wave(p) + Vector::y() * stretch(p)));
-        let found = guard.check_again(&mesh, &mut trace);
+        let found = guard.check(&mesh, &mut trace);
         let changed = |f: &usize| (start.far[*f] - found.far[*f]).abs() > 1e-12;
         let changed: Vec<usize> = (0..mesh.face_count()).filter(changed).collect();
         let stays = |f: usize| mesh.face(f).iter().all(|&v| flat.points()[v as usize].y < 11.0);

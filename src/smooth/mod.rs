@@ -27,7 +27,7 @@ pub(crate) use fit::{Shape, polygon, rectangle};
 pub(crate) use global::limits;
 pub use global::{SmoothReport, held_vertices, smooth};
 pub use guard::Budget;
-pub(crate) use guard::Guard;
+pub(crate) use guard::{Guard, Trace};
 pub use region::{Orientation, Region, RelaxReport, fit_local, orientation, relax_local};
 pub(crate) use soundness::{broken_below, twice_area};
 
