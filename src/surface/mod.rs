@@ -19,7 +19,7 @@ pub use features::{
 };
 pub use reference::{Hit, Reference, SurfaceError};
 pub(crate) use samples::spread;
-pub use samples::{Deviation, deviation, sample_triangles};
+pub use samples::{Deviation, deviation};
 pub(crate) use segments::Segments;
 pub use triangulation::{Triangulation, triangulate};
 

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 use super::features::{Crease, border_edges, creases};
-use super::samples::{places, sample_triangles, sampled};
+use super::samples::{place_in_triangle, sampled};
 use super::tree::{Best, CLOSEST, Tree};
 use super::triangulation::{Triangulation, triangulate};
 use crate::mesh::{NONE, Point, PolyMesh, Topology, Vector};
@@ -93,12 +93,12 @@ impl Reference {
             creases: Vec::new(),
             borders: Vec::new(),
         };
-        surface.measure_area();
+        surface.area = surface.areas().iter().sum();
         Ok(surface)
     }
 
-    /// The surface of `mesh`, whose faces are those of this surface in other places, with triangles of
-    /// the same numbers; none if a triangle has got or lost an area. O(n), parallel.
+    /// The surface of `mesh`, whose faces are those of this surface in other places, with triangles
+    /// of the same numbers; none if a triangle has got or lost an area. O(n), parallel.
     #[must_use]
     pub fn moved(mut self, mesh: &PolyMesh) -> Option<Self> {
         let Triangulation { points, triangles, .. } = triangulate(mesh);
@@ -113,15 +113,14 @@ impl Reference {
         self.tree.follow(points, |k| triangles[source[k as usize] as usize]);
         self.normals = Vec::new();
         self.diagonal = mesh.diagonal();
-        self.measure_area();
+        self.area = self.areas().iter().sum();
         Some(self)
     }
 
-    /// Finds the area of the triangles as they are.
-    fn measure_area(&mut self) {
+    /// The area of each triangle as it is. Parallel.
+    fn areas(&self) -> Vec<f64> {
         let numbers = (0..self.source.len() as u32).into_par_iter();
-        let areas: Vec<f64> = numbers.map(|t| self.area_vector(t).norm()).collect();
-        self.area = areas.iter().sum();
+        numbers.map(|t| self.area_vector(t).norm()).collect()
     }
 
     /// Points of the surface: those of the mesh, then the centres of its larger polygons.
@@ -300,20 +299,21 @@ impl Reference {
     /// About evenly spread points of the surface, `count` of them, always the same.
     #[must_use]
     pub fn samples(&self, count: usize) -> Vec<Point> {
-        sample_triangles(self.points(), self.triangles(), count)
+        self.samples_on(&self.sampled(count))
     }
 
     /// The triangle that each of those points is on.
     #[must_use]
     pub fn sampled(&self, count: usize) -> Vec<u32> {
-        sampled(self.points(), self.triangles(), count)
+        sampled(&self.areas(), count)
     }
 
-    /// Where the samples on the triangles `sampled` are now: [`Self::samples`], as long as nothing has
-    /// [moved](Self::moved).
+    /// Where the samples on the triangles `sampled` are now: [`Self::samples`], as long as nothing
+    /// has [moved](Self::moved). Parallel.
     #[must_use]
     pub fn samples_on(&self, sampled: &[u32]) -> Vec<Point> {
-        places(self.points(), self.triangles(), sampled)
+        let place = |(i, &t)| place_in_triangle(i, &self.tree.corners(t));
+        sampled.par_iter().enumerate().map(place).collect()
     }
 
     fn start(&self, query: &Point, last: u32) -> Best {

@@ -6,25 +6,13 @@
 
 use super::reference::Reference;
 use crate::mesh::Point;
-use rayon::prelude::*;
 
-/// About evenly spread points of some triangles, `count` of them unless the area is zero.
-/// O(triangles + count).
-#[must_use]
-pub fn sample_triangles(points: &[Point], triangles: &[[u32; 3]], count: usize) -> Vec<Point> {
-    places(points, triangles, &sampled(points, triangles, count))
-}
-
-/// The number of the triangle that each of those samples is on, ascending.
-pub(super) fn sampled(points: &[Point], triangles: &[[u32; 3]], count: usize) -> Vec<u32> {
-    let area = |t: &[u32; 3]| {
-        let [a, b, c] = t.map(|v| points[v as usize]);
-        (b - a).cross(&(c - a)).norm() * 0.5
-    };
-    let areas: Vec<f64> = triangles.par_iter().map(area).collect();
+/// The number of the triangle that each of `count` samples is on, ascending, for triangles of these
+/// areas; none if they have none. O(triangles + count).
+pub(super) fn sampled(areas: &[f64], count: usize) -> Vec<u32> {
     let total: f64 = areas.iter().sum();
     let (mut out, mut done) = (Vec::with_capacity(count), 0.0);
-    for (area, number) in areas.into_iter().zip(0..) {
+    for (area, number) in areas.iter().zip(0..) {
         done += area;
         // Sample i stands in the middle of its share of the area, (i + 1/2) / count.
         while out.len() < count && (out.len() as f64 + 0.5) * total < done * count as f64 {
@@ -34,15 +22,8 @@ pub(super) fn sampled(points: &[Point], triangles: &[[u32; 3]], count: usize) ->
     out
 }
 
-/// Where samples are that are on the triangles of such numbers.
-pub(super) fn places(points: &[Point], triangles: &[[u32; 3]], sampled: &[u32]) -> Vec<Point> {
-    let corners = |t: u32| triangles[t as usize].map(|v| points[v as usize]);
-    let place = |(i, &t): (usize, &u32)| place_in_triangle(i, &corners(t));
-    sampled.par_iter().enumerate().map(place).collect()
-}
-
 /// Sample number `i` put at a place of the triangle that looks random.
-fn place_in_triangle(i: usize, [a, b, c]: &[Point; 3]) -> Point {
+pub(super) fn place_in_triangle(i: usize, [a, b, c]: &[Point; 3]) -> Point {
     // Powers of the inverse of the plastic number, the real root of x^3 = x + 1.
     const STEP: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
     let [u, v] = STEP.map(|s| (0.5 + s * (i + 1) as f64).fract());
