@@ -65,7 +65,7 @@ pub struct CurveDistance {
 }
 
 impl CurveDistance {
-    fn new(points: &[Point], to: Vec<[Point; 2]>, edge: f64, diagonal: f64) -> Option<Self> {
+    fn new(points: &[Point], to: &[[Point; 2]], edge: f64, diagonal: f64) -> Option<Self> {
         let mut distances = Segments::new(to).0.distances(points);
         let mean = mean(&distances)?;
         let near = distances.iter().filter(|&&d| d < 0.1 * edge).count();
@@ -113,12 +113,13 @@ impl Features {
         if !lines.sharp.is_empty() {
             let edge = mean_half_edge(shape);
             let points = points_along(&lines.sharp, step(edge, diagonal));
-            let all = shape.topology.edges.iter().map(|&h| shape.segment(h as usize)).collect();
+            let edges = shape.topology.edges.iter();
+            let all: Vec<_> = edges.map(|&h| shape.segment(h as usize)).collect();
             let sharp = sharp_segments(shape, angle_deg / 2.0);
-            features.to_any_mesh_edge = CurveDistance::new(&points, all, edge, diagonal);
+            features.to_any_mesh_edge = CurveDistance::new(&points, &all, edge, diagonal);
             features.mesh_sharp_edges = Some(sharp.len());
             if !sharp.is_empty() {
-                features.to_sharp_mesh_edge = CurveDistance::new(&points, sharp, edge, diagonal);
+                features.to_sharp_mesh_edge = CurveDistance::new(&points, &sharp, edge, diagonal);
             }
         }
         features
@@ -157,7 +158,7 @@ impl Boundary {
             Self::Counts { mesh_boundary_edges: own.len(), ref_boundary_edges: lines.border.len() };
         let step = step(mean_half_edge(shape), diagonal);
         let from = |from: &[[Point; 2]], to: &[[Point; 2]]| {
-            let (tree, _) = Segments::new(to.to_vec());
+            let (tree, _) = Segments::new(to);
             let distances = tree.distances(&points_along(from, step));
             Some((max(&distances)? / diagonal, mean(&distances)? / diagonal))
         };

@@ -140,10 +140,12 @@ fn from_mesh(shape: &Shape, own: &Reference, target: &Target) -> (MeshToReferenc
     let mut all = distances(&target.surface, &probes);
     let diagonal = target.surface.diagonal();
     let vertices_max = farthest(&all[samples..]) / diagonal;
-    let mut triangles = Vec::with_capacity(shape.centres.len());
-    target.surface.closest_each(&shape.centres, &mut Vec::new(), |_, hit| {
+    let order = own.faces_in_order(shape.centres.len());
+    let centres: Vec<Point> = order.iter().map(|&f| shape.centres[f as usize]).collect();
+    let mut triangles = vec![0; centres.len()];
+    target.surface.closest_each(&centres, &mut Vec::new(), |i, hit| {
         all.push(hit.distance);
-        triangles.push(hit.triangle);
+        triangles[order[i] as usize] = hit.triangle;
     });
     let surface = OneWay::new(&all, samples, diagonal);
     let orientation = Orientation::new(shape, &target.surface, &triangles);
@@ -203,8 +205,8 @@ fn farthest(distances: &[f64]) -> f64 {
 /// Points that faces of `mesh` use: first those of its `surface` in the order of that, in which
 /// neighbours are near each other.
 fn used_points(mesh: &PolyMesh, surface: &Reference) -> Vec<Point> {
-    let mut left = connectivity::used_vertices(mesh);
-    let take = |v: usize| std::mem::take(left.get_mut(v)?).then(|| mesh.points()[v]);
-    let corners = surface.triangles().iter().flatten().map(|&v| v as usize);
-    corners.chain(0..mesh.vertex_count()).filter_map(take).collect()
+    let used = connectivity::used_vertices(mesh);
+    let mut vertices = surface.vertices_in_order(mesh.vertex_count());
+    vertices.retain(|&v| used[v as usize]);
+    vertices.into_iter().map(|v| mesh.points()[v as usize]).collect()
 }

@@ -59,8 +59,9 @@ impl Contact {
     /// Looks everything up anew. O(n log n), parallel.
     pub fn attach(&mut self, mesh: &QuadMesh, reference: &Reference) -> Result<(), MeshError> {
         let polygons = lower(mesh, &[String::new()])?;
-        self.attach_vertices(mesh, &polygons, reference);
-        let Ok(surface) = Reference::plain(&polygons.mesh) else {
+        let surface = Reference::plain(&polygons.mesh).ok();
+        self.attach_vertices(mesh, (&polygons, surface.as_ref()), reference);
+        let Some(surface) = surface else {
             self.first.clear();
             return Ok(());
         };
@@ -93,14 +94,28 @@ impl Contact {
         near
     }
 
-    fn attach_vertices(&mut self, mesh: &QuadMesh, polygons: &Lowered, reference: &Reference) {
-        let known = |&v: &Vertex| self.near(v).unwrap_or(NONE);
-        let mut near: Vec<u32> = polygons.vertex_ids.iter().map(known).collect();
-        reference.closest_each(polygons.mesh.points(), &mut near, |_, _| ());
+    /// Vertices in the order of the `surface` of the mesh, if it has one: neighbours are near each
+    /// other there.
+    fn attach_vertices(
+        &mut self,
+        mesh: &QuadMesh,
+        (polygons, surface): (&Lowered, Option<&Reference>),
+        reference: &Reference,
+    ) {
+        let count = polygons.mesh.vertex_count();
+        let order = surface.map_or_else(
+            || (0..count as u32).collect(),
+            |surface| surface.vertices_in_order(count),
+        );
+        let id = |&v: &u32| polygons.vertex_ids[v as usize];
+        let mut near: Vec<u32> = order.iter().map(|v| self.near(id(v)).unwrap_or(NONE)).collect();
+        let points: Vec<Point> =
+            order.iter().map(|&v| polygons.mesh.points()[v as usize]).collect();
+        reference.closest_each(&points, &mut near, |_, _| ());
         self.near.clear();
         self.near.resize(mesh.vertex_ids() as usize, NONE);
-        for (&v, near) in polygons.vertex_ids.iter().zip(near) {
-            self.near[v as usize] = near;
+        for (v, near) in order.iter().zip(near) {
+            self.near[id(v) as usize] = near;
         }
     }
 
@@ -120,6 +135,13 @@ impl Contact {
     #[must_use]
     pub fn near(&self, v: Vertex) -> Option<u32> {
         self.near.get(v as usize).copied().filter(|&t| t != NONE)
+    }
+
+    /// A triangle of the reference near a vertex, or near a corner of a face; [`NONE`] if none is
+    /// known.
+    pub(super) fn near_element(&self, mesh: &QuadMesh, v: Vertex) -> u32 {
+        let corner = if mesh.is_face(v) { mesh.neighbours(v).next() } else { Some(v) };
+        corner.and_then(|v| self.near(v)).unwrap_or(NONE)
     }
 
     /// Notes a triangle near `v`.

@@ -283,12 +283,18 @@ impl Schedule {
         }
         let done = std::sync::atomic::AtomicUsize::new(0);
         let left = mesh.total_irregularity() as usize;
-        seeds
-            .par_iter()
+        // Seeds that follow one another are near each other on the reference: what one has looked up
+        // is still at hand for the next.
+        let mut order: Vec<u32> = (0..seeds.len() as u32).collect();
+        let place = |&i: &u32| contact.near_element(mesh, seeds[i as usize]);
+        order.sort_by_cached_key(place);
+        let mut outcomes: Vec<(u32, Outcome)> = order
+            .into_par_iter()
             .with_max_len(1)
-            .map(|&seed| {
+            .map(|i| {
+                let seed = seeds[i as usize];
                 if watch.cancelled() {
-                    return Outcome::of(seed);
+                    return (i, Outcome::of(seed));
                 }
                 let index = rayon::current_thread_index().unwrap_or(0);
                 let mut worker = lock(&self.workers[index % self.workers.len()]);
@@ -296,9 +302,11 @@ impl Schedule {
                 drop(worker);
                 let count = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
                 watch.progress(Phase::Plan, count, seeds.len(), Some(left));
-                outcome
+                (i, outcome)
             })
-            .collect()
+            .collect();
+        outcomes.sort_unstable_by_key(|&(i, _)| i);
+        outcomes.into_iter().map(|(_, outcome)| outcome).collect()
     }
 
     /// Makes the proposals, best first, that do not meet one made before them in this round.

@@ -62,11 +62,6 @@ pub(super) fn creases(mesh: &PolyMesh, topology: &Topology) -> Vec<Crease> {
     halves.map(crease).filter(|c| c.angle_deg >= LEAST_CREASE_DEG).collect()
 }
 
-/// Edges of `mesh` without a partner. O(n).
-pub(super) fn border_edges(mesh: &PolyMesh, topology: &Topology) -> Vec<[u32; 2]> {
-    topology.boundary_half_edges().map(|h| ends(mesh, topology, h)).collect()
-}
-
 fn ends(mesh: &PolyMesh, topology: &Topology, h: u32) -> [u32; 2] {
     let corners = mesh.corners();
     [corners[h as usize], corners[topology.next[h as usize] as usize]]
@@ -110,7 +105,7 @@ impl SharpLines {
             chain.push(number[of]);
             segments.push([crease.a, crease.b].map(|v| reference.points()[v as usize]));
         }
-        let (tree, order) = Segments::new(segments.clone());
+        let (tree, order) = Segments::new(&segments);
         Self {
             segments: order.iter().map(|&s| segments[s as usize]).collect(),
             chain: order.iter().map(|&s| chain[s as usize]).collect(),

@@ -4,7 +4,7 @@ use fixedbitset::FixedBitSet;
 use rayon::prelude::*;
 use thiserror::Error;
 
-use super::features::{Crease, border_edges, creases};
+use super::features::{Crease, creases};
 use super::samples::{place_in_triangle, sampled};
 use super::tree::{Best, CLOSEST, Tree};
 use super::triangulation::{Triangulation, triangulate};
@@ -53,23 +53,22 @@ pub struct Reference {
     area: f64,
     tree: Tree,
     creases: Vec<Crease>,
-    borders: Vec<[u32; 2]>,
 }
 
 impl Reference {
-    /// Triangulates `mesh`, drops triangles without area and finds its creases and borders.
-    /// O(n log n).
+    /// Triangulates `mesh`, drops triangles without area and finds its creases. O(n log n).
     pub fn new(mesh: &PolyMesh) -> Result<Self, SurfaceError> {
         let mut surface = Self::plain(mesh)?;
         let numbers = (0..surface.source.len() as u32).into_par_iter();
         surface.normals = numbers.map(|t| surface.normal(t)).collect();
-        let topology = Topology::new(mesh);
-        surface.creases = creases(mesh, &topology);
-        surface.borders = border_edges(mesh, &topology);
+        surface.creases = creases(mesh, &Topology::new(mesh));
+        for Crease { a, b, .. } in &mut surface.creases {
+            [*a, *b] = [*a, *b].map(|v| surface.tree.places()[v as usize]);
+        }
         Ok(surface)
     }
 
-    /// Like [`Reference::new`] without creases, borders and kept normals: for distances to a mesh in work.
+    /// Like [`Reference::new`] without creases and kept normals: for distances to a mesh in work.
     /// O(n log n), parallel.
     pub fn plain(mesh: &PolyMesh) -> Result<Self, SurfaceError> {
         let Triangulation { points, triangles, face } = triangulate(mesh);
@@ -81,7 +80,7 @@ impl Reference {
         }
         drop(is_solid);
         let corners = |k: u32| triangles[solid[k as usize] as usize];
-        let (tree, order) = Tree::build(points, solid.len(), corners);
+        let (tree, order) = Tree::build(&points, solid.len(), corners);
         let source: Vec<u32> = order.into_iter().map(|k| solid[k as usize]).collect();
         let mut surface = Self {
             face: source.par_iter().map(|&t| face[t as usize]).collect(),
@@ -91,7 +90,6 @@ impl Reference {
             diagonal: mesh.diagonal(),
             tree,
             creases: Vec::new(),
-            borders: Vec::new(),
         };
         surface.area = surface.areas().iter().sum();
         Ok(surface)
@@ -110,7 +108,7 @@ impl Reference {
         }
         drop(is_solid);
         let source = &self.source;
-        self.tree.follow(points, |k| triangles[source[k as usize] as usize]);
+        self.tree.follow(&points, |k| triangles[source[k as usize] as usize]);
         self.normals = Vec::new();
         self.diagonal = mesh.diagonal();
         self.area = self.areas().iter().sum();
@@ -123,10 +121,29 @@ impl Reference {
         numbers.map(|t| self.area_vector(t).norm()).collect()
     }
 
-    /// Points of the surface: those of the mesh, then the centres of its larger polygons.
+    /// Points of the surface, those of the mesh and the centres of its larger polygons: first those
+    /// that triangles use, in the order of these.
     #[must_use]
     pub fn points(&self) -> &[Point] {
         self.tree.points()
+    }
+
+    /// The vertices of the mesh, `count` of them, in the order of [`Self::points`]. O(n).
+    pub(crate) fn vertices_in_order(&self, count: usize) -> Vec<u32> {
+        let mut vertices = vec![NONE; self.points().len()];
+        for (v, &place) in self.tree.places().iter().enumerate().take(count) {
+            vertices[place as usize] = v as u32;
+        }
+        vertices.retain(|&v| v != NONE);
+        vertices
+    }
+
+    /// The faces of the mesh, `count` of them, in the order of their triangles, then those without.
+    /// O(n).
+    pub(crate) fn faces_in_order(&self, count: usize) -> Vec<u32> {
+        let mut seen = FixedBitSet::with_capacity(count);
+        let all = self.faces().iter().copied().chain(0..count as u32);
+        all.filter(|&f| !seen.put(f as usize)).collect()
     }
 
     /// Triangles with an area, in the order of this surface.
@@ -167,16 +184,10 @@ impl Reference {
         self.area
     }
 
-    /// Edges between two polygons with a noticeable dihedral angle.
+    /// Edges between two polygons with a noticeable dihedral angle, between [points](Self::points).
     #[must_use]
     pub fn creases(&self) -> &[Crease] {
         &self.creases
-    }
-
-    /// Edges with a polygon on one side only, or on more than two.
-    #[must_use]
-    pub fn borders(&self) -> &[[u32; 2]] {
-        &self.borders
     }
 
     /// The closest point of the surface. O(log n) expected.
@@ -289,11 +300,9 @@ impl Reference {
     /// The points that triangles use, in the order of these: neighbours are near each other.
     /// O(triangles).
     #[must_use]
-    pub fn used_points(&self) -> Vec<Point> {
-        let mut seen = FixedBitSet::with_capacity(self.points().len());
-        let corners = self.triangles().iter().flatten();
-        let first = corners.filter(|&&v| !seen.put(v as usize));
-        first.map(|&v| self.points()[v as usize]).collect()
+    pub fn used_points(&self) -> &[Point] {
+        let last = self.triangles().par_iter().flatten().max();
+        &self.points()[..last.map_or(0, |&v| v as usize + 1)]
     }
 
     /// About evenly spread points of the surface, `count` of them, always the same.
@@ -391,6 +400,30 @@ mod tests {
         (points[b], points[c]) = (points[a], points[a]);
         mesh.set_points(points);
         assert!(moved.moved(&mesh).is_none());
+    }
+
+    #[test]
+    fn points_are_stored_as_triangles_use_them() {
+        let ball = crate::mesh::shapes::sphere(6);
+        let faces = ball.faces().map(|face| face.iter().map(|v| v + 1).collect::<Vec<u32>>());
+        let unused = std::iter::once(Point::origin());
+        let points = unused.chain(ball.points().iter().copied()).collect();
+        let mesh = PolyMesh::new(points, faces).unwrap();
+        let surface = Reference::plain(&mesh).unwrap();
+        let mut seen = 0;
+        for &v in surface.triangles().as_flattened() {
+            assert!(v <= seen, "no point is left out");
+            seen = seen.max(v + 1);
+        }
+        assert_eq!(surface.used_points(), &surface.points()[..mesh.vertex_count() - 1]);
+        let vertices = surface.vertices_in_order(mesh.vertex_count());
+        assert_eq!(vertices.last(), Some(&0), "no triangle uses this one");
+        let in_order = vertices.iter().map(|&v| mesh.points()[v as usize]);
+        assert!(in_order.eq(surface.points().iter().copied()));
+        let mut faces = surface.faces_in_order(mesh.face_count());
+        assert!(surface.faces()[..2].contains(&faces[0]));
+        faces.sort_unstable();
+        assert!(faces.into_iter().eq(0..mesh.face_count() as u32), "each of them once");
     }
 
     #[test]

@@ -52,14 +52,9 @@ pub fn deviation(surface: &Reference, other: &Reference, count: usize) -> Deviat
 }
 
 /// At most so many of some points, evenly spread over their order.
-pub(crate) fn spread(mut points: Vec<Point>, most: usize) -> Vec<Point> {
+pub(crate) fn spread(points: &[Point], most: usize) -> Vec<Point> {
     let every = points.len().div_ceil(most.max(1)).max(1);
-    let mut number = 0;
-    points.retain(|_| {
-        number += 1;
-        (number - 1) % every == 0
-    });
-    points
+    points.iter().step_by(every).copied().collect()
 }
 
 /// Distances from samples and corners of `from` to `to`.

@@ -13,13 +13,13 @@ pub(crate) struct Segments {
 impl Segments {
     /// Puts segments in a tree; also returns the order in which that has them, which is spatially
     /// coherent. O(n log n), parallel.
-    pub(crate) fn new(segments: Vec<[Point; 2]>) -> (Self, Vec<u32>) {
+    pub(crate) fn new(segments: &[[Point; 2]]) -> (Self, Vec<u32>) {
         let count = segments.len();
         if count == 0 {
             return (Self { tree: None }, Vec::new());
         }
         let flat = |s: u32| [2 * s, 2 * s + 1, 2 * s + 1];
-        let (tree, order) = Tree::build(segments.into_flattened(), count, flat);
+        let (tree, order) = Tree::build(segments.as_flattened(), count, flat);
         (Self { tree: Some(tree) }, order)
     }
 
@@ -51,7 +51,7 @@ mod tests {
         let segments: Vec<[Point; 2]> =
             (0..200).map(|i| [place(i), place(i + 1) + (place(i) - place(i + 1)) * 0.8]).collect();
         let points: Vec<Point> = (0..100).map(|i| place(1000 + i) * 1.5).collect();
-        let found = Segments::new(segments.clone()).0.distances(&points);
+        let found = Segments::new(&segments).0.distances(&points);
         for (p, found) in points.iter().zip(found) {
             let squared = |[a, b]: &[Point; 2]| {
                 let t = (p - a).dot(&(b - a)) / (b - a).norm_squared();
@@ -65,8 +65,8 @@ mod tests {
     #[test]
     fn points_and_nothing_are_segments_too() {
         let (origin, p) = (Point::origin(), Point::new(3.0, 4.0, 0.0));
-        let distance = |segments| Segments::new(segments).0.distances(&[p])[0];
-        assert!((distance(vec![[origin, origin]; 9]) - 5.0).abs() < 1e-14);
-        assert!(distance(Vec::new()).is_infinite());
+        let distance = |segments: &[[Point; 2]]| Segments::new(segments).0.distances(&[p])[0];
+        assert!((distance(&[[origin, origin]; 9]) - 5.0).abs() < 1e-14);
+        assert!(distance(&[]).is_infinite());
     }
 }

@@ -14,7 +14,7 @@
 //! of the distance computation, so pruning never cuts the winner.
 
 use super::Hit;
-use crate::mesh::Point;
+use crate::mesh::{NONE, Point};
 use rayon::prelude::*;
 
 /// Children of a node.
@@ -74,7 +74,11 @@ impl Node {
 #[derive(Debug, Clone)]
 pub(super) struct Tree {
     nodes: Vec<Node>,
+    /// In the order in which the triangles use them, then the others: what a search looks up lies
+    /// close together.
     points: Vec<Point>,
+    /// Where each point is that the tree was given.
+    place: Vec<u32>,
     /// The corners of each triangle, as numbers of points: the places themselves, side by side,
     /// would be as large as all the rest.
     triangles: Vec<[u32; 3]>,
@@ -86,42 +90,52 @@ impl Tree {
     /// as numbers of `points`, in O(n log n), parallel; also returns the order in which it stores
     /// them, which is spatially coherent.
     pub(super) fn build(
-        points: Vec<Point>,
+        points: &[Point],
         count: usize,
         corners: impl Fn(u32) -> [u32; 3] + Sync,
     ) -> (Self, Vec<u32>) {
         let numbers = || (0..count as u32).into_par_iter();
-        let place = |t: u32| corners(t).map(|v| points[v as usize]);
-        let frame = Frame::new(count, place);
-        let item = |t: u32| Item { centre: frame.bounds(&place(t)).doubled_centre(), triangle: t };
+        let at = |t: u32| corners(t).map(|v| points[v as usize]);
+        let frame = Frame::new(count, at);
+        let item = |t: u32| Item { centre: frame.bounds(&at(t)).doubled_centre(), triangle: t };
         let mut items: Vec<Item> = numbers().map(item).collect();
         sort(&mut items);
         let order: Vec<u32> = items.into_iter().map(|item| item.triangle).collect();
-        let triangles = order.par_iter().map(|&t| corners(t)).collect();
+        let mut triangles: Vec<[u32; 3]> = order.par_iter().map(|&t| corners(t)).collect();
+        let (points, place) = in_order_of_use(points, triangles.as_flattened_mut());
         let nodes = vec![Node::EMPTY; node_count(count)];
-        let mut tree = Self { nodes, points, triangles, frame };
+        let mut tree = Self { nodes, points, place, triangles, frame };
         tree.fill();
         (tree, order)
     }
 
     /// Lets the triangles, which keep their order, have other corners. The tree is then as right as
     /// one that is built anew, and as fast as long as neighbours stay neighbours. O(n), parallel.
-    pub(super) fn follow(&mut self, points: Vec<Point>, corners: impl Fn(u32) -> [u32; 3] + Sync) {
-        self.points = points;
-        self.triangles.par_iter_mut().enumerate().for_each(|(t, own)| *own = corners(t as u32));
+    pub(super) fn follow(&mut self, points: &[Point], corners: impl Fn(u32) -> [u32; 3] + Sync) {
+        let Self { points: own, place, triangles, .. } = self;
+        for (&to, point) in place.iter().zip(points) {
+            own[to as usize] = *point;
+        }
+        let placed = |t: usize| corners(t as u32).map(|v| place[v as usize]);
+        triangles.par_iter_mut().enumerate().for_each(|(t, own)| *own = placed(t));
         self.frame = Frame::new(self.triangles.len(), |t| self.corners(t));
         self.fill();
     }
 
     /// Fills the nodes from the triangles.
     fn fill(&mut self) {
-        let Self { nodes, points, triangles, frame } = self;
+        let Self { nodes, points, triangles, frame, .. } = self;
         Part { nodes, number: 0, triangles, start: 0 }.fill(&Scene { frame, points });
     }
 
-    /// All points.
+    /// All points: first those that triangles use.
     pub(super) fn points(&self) -> &[Point] {
         &self.points
+    }
+
+    /// The number here of each point that the tree was given.
+    pub(super) fn places(&self) -> &[u32] {
+        &self.place
     }
 
     /// The corners of all triangles, as numbers of points.
@@ -378,6 +392,28 @@ fn widest_axis(items: &[Item]) -> usize {
     let range = centres.fold(Bounds::NONE, |range, centre| range.with(&centre));
     let extent = |k: usize| range.hi[k] - range.lo[k];
     (1..3).fold(0, |best, k| if extent(k) > extent(best) { k } else { best })
+}
+
+/// The points in the order in which `corners` use them first, then the others; and where each has
+/// gone, by which the corners are numbered now.
+fn in_order_of_use(points: &[Point], corners: &mut [u32]) -> (Vec<Point>, Vec<u32>) {
+    let mut place = vec![NONE; points.len()];
+    let mut ordered = Vec::with_capacity(points.len());
+    let mut take = |v: u32| {
+        let at = &mut place[v as usize];
+        if *at == NONE {
+            *at = ordered.len() as u32;
+            ordered.push(points[v as usize]);
+        }
+        *at
+    };
+    for corner in corners {
+        *corner = take(*corner);
+    }
+    for v in 0..points.len() as u32 {
+        take(v);
+    }
+    (ordered, place)
 }
 
 /// What boxes are made from.
