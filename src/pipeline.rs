@@ -110,10 +110,11 @@ pub fn clean(
     watch: &dyn Watch,
 ) -> Result<Cleaned, CleanError> {
     let raw = mesh.clone();
-    let (mesh, mends) = mend(mesh, policy)?;
-    let surface = reference.unwrap_or(&mesh);
     watch.progress(Phase::Reference, 0, 1, None);
-    let reference = Arc::new(Reference::new(surface)?);
+    let (mended, given) = rayon::join(|| mend(mesh, policy), || reference.map(Reference::new));
+    let (mesh, mends) = mended?;
+    let surface = reference.unwrap_or(&mesh);
+    let reference = Arc::new(given.unwrap_or_else(|| Reference::new(surface))?);
     watch.progress(Phase::Measure, 0, 2, None);
     let target = Target::on(Arc::clone(&reference), surface, &config.measure);
     let before = measure(&raw, Some(&target))?;

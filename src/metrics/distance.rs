@@ -35,10 +35,14 @@ impl Target {
     /// The same with the `surface` of `mesh`, which is there already. O(n) for n corners.
     #[must_use]
     pub fn on(surface: Arc<Reference>, mesh: &PolyMesh, options: &MeasureOptions) -> Self {
-        let mut probes = surface.samples(options.samples as usize);
-        let sample_count = probes.len();
-        probes.extend(used_points(mesh, &surface));
-        let lines = Lines::new(mesh, &Topology::new(mesh), options.feature_angle_deg);
+        let places = || {
+            let mut probes = surface.samples(options.samples as usize);
+            let sample_count = probes.len();
+            probes.extend(used_points(mesh, &surface));
+            (probes, sample_count)
+        };
+        let lines = || Lines::new(mesh, &Topology::new(mesh), options.feature_angle_deg);
+        let ((probes, sample_count), lines) = rayon::join(places, lines);
         Self { options: options.clone(), surface, probes, sample_count, lines }
     }
 

@@ -58,14 +58,15 @@ pub struct Reference {
 impl Reference {
     /// Triangulates `mesh`, drops triangles without area and finds its creases. O(n log n).
     pub fn new(mesh: &PolyMesh) -> Result<Self, SurfaceError> {
-        let mut surface = Self::plain(mesh)?;
-        let numbers = (0..surface.source.len() as u32).into_par_iter();
-        surface.normals = numbers.map(|t| surface.normal(t)).collect();
-        surface.creases = creases(mesh, &Topology::new(mesh));
-        for Crease { a, b, .. } in &mut surface.creases {
+        let (surface, creases) =
+            rayon::join(|| Self::plain(mesh), || creases(mesh, &Topology::new(mesh)));
+        let (mut surface, mut creases) = (surface?, creases);
+        for Crease { a, b, .. } in &mut creases {
             [*a, *b] = [*a, *b].map(|v| surface.tree.places()[v as usize]);
         }
-        Ok(surface)
+        let numbers = (0..surface.source.len() as u32).into_par_iter();
+        surface.normals = numbers.map(|t| surface.normal(t)).collect();
+        Ok(Self { creases, ..surface })
     }
 
     /// Like [`Reference::new`] without creases and kept normals: for distances to a mesh in work.
