@@ -222,6 +222,10 @@ const HOPES: [Hope; 7] = [
     Hope { times: 1.0, share: 0.0, lack: 0.0, bare: None },
 ];
 
+/// After fewer sweeps than this it does not pay to look: the vertices would have to be put on the
+/// reference.
+const FEW: u32 = 5;
+
 impl Gate {
     /// Judges what was done to `mesh` since `mark`, which touched those vertices.
     /// The mesh is as before the edit afterwards: a caller that wants it makes it again.
@@ -247,9 +251,14 @@ impl Gate {
         let parts = HOPES.len() as u32 - 1;
         // Where vertices slide along a crease, it takes longer until the surface is covered.
         let slides = self.patch.rails().next().is_some();
+        let mut done = 0;
         for (hope, part) in HOPES.iter().zip(0..) {
             if part > 0 {
-                let now = sweeps * part / parts - sweeps * (part - 1) / parts;
+                let now = sweeps * part / parts - done;
+                if now < FEW && part < parts {
+                    continue;
+                }
+                done += now;
                 let on = (setting.reference, Some(setting.lines));
                 relax_local(&mut self.patch, on, setting.relax, now);
                 if part == parts {
