@@ -206,12 +206,13 @@ struct Hope {
     bare: Option<f64>,
 }
 
-/// Before the relaxing and after each sixth of it. Large patches, which are most of the work,
-/// converge fastest. Of the edits that pass in the end 1.4 % are given up too early for their angles
-/// on Spot, Blub and the bunny, and 0.5 % for their quads on Spot, the goat head, the penguin and the
-/// feature type; of those that do not pass for their quads, three in four before the relaxing.
-/// Of those that leave the reference bare, nine in ten are given up before the relaxing on Spot, and
-/// half of the others after a sixth of it; of those that pass, 1 in 3000 and 1 in 200.
+/// Before the relaxing and after each sixth of it, or after more where that is less than [`FEW`]
+/// sweeps. Large patches, which are most of the work, converge fastest. Of the edits that pass in the
+/// end 1.4 % are given up too early for their angles on Spot, Blub and the bunny, and 0.5 % for their
+/// quads on Spot, the goat head, the penguin and the feature type; of those that do not pass for their
+/// quads, three in four before the relaxing. Of those that leave the reference bare, nine in ten are
+/// given up before the relaxing on Spot, and half of the others after a sixth of it; of those that
+/// pass, 1 in 3000 and 1 in 200.
 const HOPES: [Hope; 7] = [
     Hope { times: 7.0, share: 0.3, lack: 1.6, bare: Some(1.1) },
     Hope { times: 3.4, share: 0.15, lack: 0.4, bare: Some(1.0) },
@@ -222,8 +223,8 @@ const HOPES: [Hope; 7] = [
     Hope { times: 1.0, share: 0.0, lack: 0.0, bare: None },
 ];
 
-/// After fewer sweeps than this it does not pay to look: the vertices would have to be put on the
-/// reference.
+/// After fewer sweeps than this it does not pay to look at an edit on its way: its vertices would
+/// have to be put on the reference first.
 const FEW: u32 = 5;
 
 impl Gate {
