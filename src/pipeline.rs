@@ -111,17 +111,15 @@ pub fn clean(
 ) -> Result<Cleaned, CleanError> {
     let raw = mesh.clone();
     watch.progress(Phase::Reference, 0, 1, None);
-    let (mended, given) = rayon::join(|| mend(mesh, policy), || reference.map(Reference::new));
-    let (mesh, mends) = mended?;
-    let surface = reference.unwrap_or(&mesh);
-    let reference = Arc::new(given.unwrap_or_else(|| Reference::new(surface))?);
+    let (mesh, mends, surface) = prepare(mesh, reference, policy)?;
+    let surface = Arc::new(surface);
     watch.progress(Phase::Measure, 0, 2, None);
-    let target = Target::on(Arc::clone(&reference), surface, &config.measure);
+    let target = Target::on(Arc::clone(&surface), reference.unwrap_or(&mesh), &config.measure);
     let before = measure(&raw, Some(&target))?;
     let faces = raw.face_count();
     drop(raw);
     let Edited { q, group_names, feature_edges, schedule, conversion } =
-        edit((mesh, faces), &reference, config, watch)?;
+        edit((mesh, faces), &surface, config, watch)?;
     let stopped = watch.cancelled();
     let result = lower(&q, &group_names)?.mesh;
     drop(q);
@@ -155,12 +153,23 @@ pub fn plan(
     watch: &dyn Watch,
 ) -> Result<Planned, CleanError> {
     let faces = mesh.face_count();
-    let (mesh, _) = mend(mesh, policy)?;
     watch.progress(Phase::Reference, 0, 1, None);
-    let reference = Reference::new(reference.unwrap_or(&mesh))?;
-    let Edited { q, group_names, schedule, .. } = edit((mesh, faces), &reference, config, watch)?;
+    let (mesh, _, surface) = prepare(mesh, reference, policy)?;
+    let Edited { q, group_names, schedule, .. } = edit((mesh, faces), &surface, config, watch)?;
     let Schedule { edits, rounds, .. } = schedule;
     Ok(Planned { edits, rounds, mesh: lower(&q, &group_names)?.mesh })
+}
+
+/// Mends `mesh` and prepares the surface of `reference`, at the same time, or its own.
+fn prepare(
+    mesh: PolyMesh,
+    reference: Option<&PolyMesh>,
+    policy: MendPolicy,
+) -> Result<(PolyMesh, MendReport, Reference), CleanError> {
+    let (mended, given) = rayon::join(|| mend(mesh, policy), || reference.map(Reference::new));
+    let (mesh, mends) = mended?;
+    let surface = given.unwrap_or_else(|| Reference::new(&mesh))?;
+    Ok((mesh, mends, surface))
 }
 
 /// What was made of a mesh, still lifted.

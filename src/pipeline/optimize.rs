@@ -1,8 +1,8 @@
 //! From a mesh to one with planar or equiangular faces: mend → optimise, on fixed connectivity.
 
-use super::{CleanError, budget};
+use super::{CleanError, budget, prepare};
 use crate::config::Config;
-use crate::mesh::{MendPolicy, MendReport, PolyMesh, Topology, check, mend};
+use crate::mesh::{MendPolicy, MendReport, PolyMesh, Topology, check};
 use crate::optimize::{self, Fairness, Goal, Options};
 use crate::smooth::{Budget, held_vertices};
 use crate::surface::{
@@ -60,9 +60,8 @@ pub fn optimize(
     config: &Config,
     watch: &dyn Watch,
 ) -> Result<Optimized, CleanError> {
-    let (mut mesh, mends) = mend(mesh, policy)?;
     watch.progress(Phase::Reference, 0, 1, None);
-    let reference = Reference::new(reference.unwrap_or(&mesh))?;
+    let (mut mesh, mends, reference) = prepare(mesh, reference, policy)?;
     let topology = Topology::new(&mesh);
     let allowed = allowed(&mesh, &reference, config)?;
     let held = held(&mesh, &topology, &reference, config);

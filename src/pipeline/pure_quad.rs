@@ -4,9 +4,9 @@
 //! are relaxed on the reference, and at the end all of them together within the budget of
 //! distance. What is far from any change stays as it is, to the bit.
 
-use super::{CleanError, budget, lift_held};
+use super::{CleanError, budget, lift_held, prepare};
 use crate::config::Config;
-use crate::mesh::{MendPolicy, MendReport, MeshError, PolyMesh, Topology, check, mend};
+use crate::mesh::{MendPolicy, MendReport, MeshError, PolyMesh, Topology, check};
 use crate::metrics::{Metrics, Target, measure};
 use crate::moves::pure::{self, Conversion, Kind};
 use crate::smooth::{Budget, Orientation, RelaxOptions, Surroundings, orientation, smooth};
@@ -57,13 +57,12 @@ pub fn pure_quad(
     watch: &dyn Watch,
 ) -> Result<Converted, CleanError> {
     let raw = mesh.clone();
-    let (mesh, mends) = mend(mesh, policy)?;
-    let surface = reference.unwrap_or(&mesh);
     watch.progress(Phase::Measure, 0, 2, None);
-    let reference = Arc::new(Reference::new(surface)?);
-    let target = Target::on(Arc::clone(&reference), surface, &config.measure);
+    let (mesh, mends, surface) = prepare(mesh, reference, policy)?;
+    let surface = Arc::new(surface);
+    let target = Target::on(Arc::clone(&surface), reference.unwrap_or(&mesh), &config.measure);
     let before = measure(&raw, Some(&target))?;
-    let (q, feature_edges, conversion) = edit(&mesh, &reference, config, watch)?;
+    let (q, feature_edges, conversion) = edit(&mesh, &surface, config, watch)?;
     let result = lower(&q, mesh.group_names())?.mesh;
     check(&result).map_err(CleanError::Flawed)?;
     watch.progress(Phase::Measure, 1, 2, None);
