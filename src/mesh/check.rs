@@ -3,10 +3,9 @@
 //! [`check`] names the first flaw. `mend` removes every flaw it can; the pipeline checks what it
 //! is about to write.
 
-use rayon::prelude::*;
 use thiserror::Error;
 
-use super::{PolyMesh, Topology};
+use super::{Buckets, PolyMesh, Topology};
 
 /// Why a mesh is not clean. Elements are numbered from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
@@ -78,11 +77,16 @@ pub enum Flaw {
 /// manifold and consistently oriented, with every vertex in use and no interior one of valence
 /// below three. Otherwise names the first flaw. O(n log n) for n corners.
 pub fn check(mesh: &PolyMesh) -> Result<(), Flaw> {
-    check_faces(mesh)?;
-    check_connectivity(mesh, &Topology::new(mesh))
+    check_connected(mesh, &Topology::new(mesh))
 }
 
-pub(super) fn check_faces(mesh: &PolyMesh) -> Result<(), Flaw> {
+/// [`check`], where the connectivity of the mesh is known.
+pub(crate) fn check_connected(mesh: &PolyMesh, topology: &Topology) -> Result<(), Flaw> {
+    check_faces(mesh)?;
+    check_connectivity(mesh, topology)
+}
+
+fn check_faces(mesh: &PolyMesh) -> Result<(), Flaw> {
     if mesh.face_count() == 0 {
         return Err(Flaw::NoFaces);
     }
@@ -104,7 +108,7 @@ pub(super) fn check_faces(mesh: &PolyMesh) -> Result<(), Flaw> {
     }
 }
 
-pub(super) fn check_connectivity(mesh: &PolyMesh, topology: &Topology) -> Result<(), Flaw> {
+fn check_connectivity(mesh: &PolyMesh, topology: &Topology) -> Result<(), Flaw> {
     if let Some(&h) = topology.nonmanifold_edges.first() {
         let end = |h: u32| mesh.corners()[h as usize];
         return Err(Flaw::NonManifoldEdge { a: end(h), b: end(topology.next[h as usize]) });
@@ -132,18 +136,19 @@ pub(super) fn repeated(corners: &[u32], face: u32, seen: &mut [u32]) -> Option<u
     corners.iter().copied().find(|&v| std::mem::replace(&mut seen[v as usize], face) == face)
 }
 
-/// Pairs of faces with the same set of vertices: the first such face and a later one, ordered by
-/// the later. Only faces without repeated vertices are compared. O(n log n) for n corners.
-pub(super) fn duplicates(mesh: &PolyMesh) -> Vec<(u32, u32)> {
+/// Pairs of faces with the same vertices: the first such face and a later one, ordered by the
+/// later. O(n log n) for n corners.
+pub(crate) fn duplicates(mesh: &PolyMesh) -> Vec<(u32, u32)> {
     let key = |f: u32| {
         let face = mesh.face(f as usize);
-        let (lo, hi) = face.iter().fold((u32::MAX, 0), |(l, h), &v| (l.min(v), h.max(v)));
-        (lo, hi, face.len() as u32, f)
+        // A face without corners comes after all others.
+        let none = (mesh.vertex_count() as u32, 0);
+        let (lo, hi) = face.iter().fold(none, |(lo, hi), &v| (lo.min(v), hi.max(v)));
+        (lo, (hi, face.len(), f))
     };
-    let mut order: Vec<_> = (0..mesh.face_count() as u32).map(key).collect();
-    order.par_sort_unstable();
+    let faces = Buckets::new(mesh.face_count(), mesh.vertex_count() + 1, key);
     let mut pairs = Vec::new();
-    for alike in order.chunk_by(|a, b| (a.0, a.1, a.2) == (b.0, b.1, b.2)) {
+    for alike in faces.iter().flat_map(|at| at.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))) {
         if alike.len() > 1 {
             pairs_among(mesh, alike, &mut pairs);
         }
@@ -152,13 +157,13 @@ pub(super) fn duplicates(mesh: &PolyMesh) -> Vec<(u32, u32)> {
     pairs
 }
 
-fn pairs_among(mesh: &PolyMesh, faces: &[(u32, u32, u32, u32)], pairs: &mut Vec<(u32, u32)>) {
+fn pairs_among(mesh: &PolyMesh, faces: &[(u32, usize, u32)], pairs: &mut Vec<(u32, u32)>) {
     let sorted = |f: u32| {
         let mut corners = mesh.face(f as usize).to_vec();
         corners.sort_unstable();
         (corners, f)
     };
-    let mut sets: Vec<_> = faces.iter().map(|k| sorted(k.3)).collect();
+    let mut sets: Vec<_> = faces.iter().map(|k| sorted(k.2)).collect();
     sets.sort_unstable();
     for same in sets.chunk_by(|a, b| a.0 == b.0) {
         pairs.extend(same[1..].iter().map(|later| (same[0].1, later.1)));

@@ -6,7 +6,7 @@
 //! vertex of its own. On a manifold mesh fans and vertices are the same.
 
 use super::PolyMesh;
-use rayon::prelude::*;
+use super::buckets::Buckets;
 
 /// "No such element" in arrays of ids.
 pub const NONE: u32 = u32::MAX;
@@ -46,29 +46,28 @@ impl Topology {
     pub fn new(mesh: &PolyMesh) -> Self {
         let (next, prev, face) = face_cycles(mesh);
         let corners = mesh.corners();
-        let key = |h: u32| {
+        let lower_end = |h: u32| {
             let (a, b) = (corners[h as usize], corners[next[h as usize] as usize]);
-            (a.min(b), a.max(b), h)
+            (a.min(b), (a.max(b), h))
         };
-        let numbers = (0..corners.len() as u32).into_par_iter();
-        let mut order: Vec<(u32, u32, u32)> = numbers.map(key).collect();
-        order.par_sort_unstable();
+        let halves = Buckets::new(corners.len(), mesh.vertex_count(), lower_end);
 
         let n = corners.len();
         let mut twin = vec![NONE; n];
         let mut same_direction = vec![false; n];
         let (mut edges, mut nonmanifold_edges, mut boundary_edge_count) =
             (Vec::new(), Vec::new(), 0);
-        for group in order.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1)) {
-            edges.push(group[0].2);
+        for group in halves.iter().flat_map(|at| at.chunk_by(|x, y| x.0 == y.0)) {
+            edges.push(group[0].1);
             match *group {
                 [_] => boundary_edge_count += 1,
-                [(lo, hi, h), (_, _, k)] => {
+                [(_, h), (_, k)] => {
                     (twin[h as usize], twin[k as usize]) = (k, h);
-                    let same = lo != hi && corners[h as usize] == corners[k as usize];
+                    let (from, to) = (corners[h as usize], corners[next[h as usize] as usize]);
+                    let same = from != to && from == corners[k as usize];
                     (same_direction[h as usize], same_direction[k as usize]) = (same, same);
                 }
-                _ => nonmanifold_edges.push(group[0].2),
+                _ => nonmanifold_edges.push(group[0].1),
             }
         }
         let mut topology = Self {
@@ -91,37 +90,43 @@ impl Topology {
 
     /// Joins the corners that meet across partner edges; fans are numbered by first corner.
     fn find_fans(&mut self, corners: &[u32]) {
-        let mut sets = DisjointSets::new(corners.len());
-        for (h, &t) in self.twin.iter().enumerate() {
-            if t == NONE || (t as usize) < h {
-                continue;
-            }
-            let (t, after_h, after_t) =
-                (t as usize, self.next[h] as usize, self.next[t as usize] as usize);
-            if self.same_direction[h] {
-                sets.join(h, t);
-                sets.join(after_h, after_t);
-            } else {
-                sets.join(h, after_t);
-                sets.join(after_h, t);
-            }
-        }
         self.fan = vec![NONE; corners.len()];
         for (c, &vertex) in corners.iter().enumerate() {
-            let root = sets.root(c);
-            if self.fan[root] == NONE {
-                self.fan[root] = self.fan_vertex.len() as u32;
-                self.fan_vertex.push(vertex);
-                self.fan_corners.push(0);
+            if self.fan[c] != NONE {
+                continue;
             }
-            self.fan[c] = self.fan[root];
-            self.fan_corners[self.fan[c] as usize] += 1;
+            let fan = self.fan_vertex.len() as u32;
+            self.fan[c] = fan;
+            let mut count = 1;
+            // Around the vertex both ways: the second finds nothing unless there is a boundary.
+            for leaving in [true, false] {
+                let mut at = (c as u32, leaving);
+                while let Some(next) = self.across(at).filter(|n| self.fan[n.0 as usize] == NONE) {
+                    self.fan[next.0 as usize] = fan;
+                    count += 1;
+                    at = next;
+                }
+            }
+            self.fan_vertex.push(vertex);
+            self.fan_corners.push(count);
         }
         self.fan_on_boundary = vec![false; self.fan_vertex.len()];
         for (h, _) in self.twin.iter().enumerate().filter(|&(_, &t)| t == NONE) {
             self.fan_on_boundary[self.fan[h] as usize] = true;
             self.fan_on_boundary[self.fan[self.next[h] as usize] as usize] = true;
         }
+    }
+
+    /// The corner beside corner `c` across the half-edge that leaves it, or else across the one that
+    /// comes to it, and whether its other edge leaves it.
+    fn across(&self, (c, leaving): (u32, bool)) -> Option<(u32, bool)> {
+        let edge = if leaving { c } else { self.prev[c as usize] };
+        let twin = self.twin[edge as usize];
+        if twin == NONE {
+            return None;
+        }
+        let starts = leaving == self.same_direction[edge as usize];
+        Some((if starts { twin } else { self.next[twin as usize] }, !starts))
     }
 
     /// Half-edges without a partner, in order.

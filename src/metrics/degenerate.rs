@@ -2,9 +2,9 @@
 //! to themselves or twice to a neighbour, vertices of valence 1 and 2.
 
 use super::components::partner_pairs;
-use crate::mesh::{PolyMesh, Topology};
-use rayon::prelude::*;
+use crate::mesh::{Buckets, PolyMesh, Topology, duplicates};
 use serde::Serialize;
+use smallvec::SmallVec;
 
 /// Counts of degenerate elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -28,17 +28,15 @@ pub struct Degenerate {
 impl Degenerate {
     /// Counts. O(n log n) for n corners.
     pub(super) fn new(mesh: &PolyMesh, topology: &Topology) -> Self {
-        let sorted = sorted_faces(mesh);
-        let row =
-            |f: u32| &sorted[mesh.offsets()[f as usize] as usize..][..mesh.face(f as usize).len()];
-        let faces = 0..mesh.face_count() as u32;
-        let repeats = |f: &u32| row(*f).windows(2).any(|w| w[0] == w[1]);
-        let mut order: Vec<u32> = faces.clone().collect();
-        order.par_sort_unstable_by(|&a, &b| row(a).cmp(row(b)));
+        let repeats = |face: &&[u32]| {
+            let mut corners: SmallVec<[u32; 8]> = SmallVec::from_slice(face);
+            corners.sort_unstable();
+            corners.windows(2).any(|w| w[0] == w[1])
+        };
         let (glued, twice) = shared_edges(topology);
         Self {
-            faces_repeated_vertex: faces.filter(repeats).count(),
-            duplicate_faces: order.windows(2).filter(|w| row(w[0]) == row(w[1])).count(),
+            faces_repeated_vertex: mesh.faces().filter(repeats).count(),
+            duplicate_faces: duplicates(mesh).len(),
             faces_degree_lt3: mesh.faces().filter(|face| face.len() < 3).count(),
             faces_glued_to_self: glued,
             face_pairs_sharing_2plus_edges: twice,
@@ -60,26 +58,20 @@ impl Degenerate {
     }
 }
 
-/// The corners of each face in ascending order.
-fn sorted_faces(mesh: &PolyMesh) -> Vec<u32> {
-    let mut corners = mesh.corners().to_vec();
-    for ends in mesh.offsets().windows(2) {
-        corners[ends[0] as usize..ends[1] as usize].sort_unstable();
-    }
-    corners
-}
-
 /// Edges between a face and itself, and pairs of faces with several common edges.
 fn shared_edges(topology: &Topology) -> (usize, usize) {
-    let pair = |(h, t): (usize, usize)| {
+    let faces = |(h, t): (usize, usize)| {
         let (f, g) = (topology.face[h], topology.face[t]);
         (f.min(g), f.max(g))
     };
-    let mut pairs: Vec<(u32, u32)> = partner_pairs(topology).map(pair).collect();
-    pairs.par_sort_unstable();
+    let pairs: Vec<(u32, u32)> = partner_pairs(topology).map(faces).collect();
     let glued = pairs.iter().filter(|(f, g)| f == g).count();
-    pairs.retain(|(f, g)| f != g);
-    (glued, pairs.chunk_by(|a, b| a == b).filter(|same| same.len() > 1).count())
+    let count = topology.face.last().map_or(0, |&f| f as usize + 1);
+    let sorted = Buckets::new(pairs.len(), count, |i| pairs[i as usize]);
+    let several = |(f, others): (u32, &[u32])| {
+        others.chunk_by(|g, h| g == h).filter(|same| same[0] != f && same.len() > 1).count()
+    };
+    (glued, (0..).zip(sorted.iter()).map(several).sum())
 }
 
 fn interior_of_valence(topology: &Topology, valence: u32) -> usize {

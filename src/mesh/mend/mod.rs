@@ -21,8 +21,7 @@ use serde::Serialize;
 use std::cell::OnceCell;
 use thiserror::Error;
 
-use super::check::{check_connectivity, check_faces};
-use super::{Flaw, MeshError, Point, PolyMesh, Topology};
+use super::{Flaw, MeshError, Point, PolyMesh, Topology, check_connected};
 
 /// One round mends everything that is known to occur; the others are for what is not.
 const ROUNDS: usize = 4;
@@ -203,6 +202,15 @@ pub enum MendError {
 ///
 /// Vertices and faces keep their order, faces their groups. O(n log n) for n corners.
 pub fn mend(mesh: PolyMesh, policy: MendPolicy) -> Result<(PolyMesh, MendReport), MendError> {
+    let (mesh, _, report) = mend_connected(mesh, policy)?;
+    Ok((mesh, report))
+}
+
+/// [`mend`]; also the connectivity of what comes out.
+pub(crate) fn mend_connected(
+    mesh: PolyMesh,
+    policy: MendPolicy,
+) -> Result<(PolyMesh, Topology, MendReport), MendError> {
     let mut log = Log { policy, mends: Vec::new() };
     let (groups, names) = (mesh.groups().to_vec(), mesh.group_names().to_vec());
     let mut draft = Draft::new(mesh);
@@ -216,10 +224,11 @@ pub fn mend(mesh: PolyMesh, policy: MendPolicy) -> Result<(PolyMesh, MendReport)
         checked = draft.check();
     }
     checked.map_err(MendError::Stuck)?;
-    let groups = draft.faces.iter().map(|&f| groups[f as usize]).collect();
-    let mesh = draft.mesh.with_groups(groups, names);
-    let mends = log.finish();
-    Ok((mesh, MendReport { mends, sources: draft.sources, face_sources: draft.faces }))
+    let Draft { mesh, topology, sources, faces } = draft;
+    let topology = topology.into_inner().unwrap_or_else(|| Topology::new(&mesh));
+    let groups = faces.iter().map(|&f| groups[f as usize]).collect();
+    let report = MendReport { mends: log.finish(), sources, face_sources: faces };
+    Ok((mesh.with_groups(groups, names), topology, report))
 }
 
 /// The mesh on its way, and where its elements come from.
@@ -246,8 +255,7 @@ impl Draft {
     }
 
     fn check(&self) -> Result<(), Flaw> {
-        check_faces(&self.mesh)?;
-        check_connectivity(&self.mesh, self.topology())
+        check_connected(&self.mesh, self.topology())
     }
 
     /// One pass over all kinds of mends; each stage counts on those before it.
