@@ -16,6 +16,7 @@
 use super::Hit;
 use crate::mesh::{NONE, Point};
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 /// Children of a node.
 const WIDTH: usize = 4;
@@ -103,8 +104,7 @@ impl Tree {
         let order: Vec<u32> = items.into_iter().map(|item| item.triangle).collect();
         let mut triangles: Vec<[u32; 3]> = order.par_iter().map(|&t| corners(t)).collect();
         let (points, place) = in_order_of_use(points, triangles.as_flattened_mut());
-        let nodes = vec![Node::EMPTY; node_count(count)];
-        let mut tree = Self { nodes, points, place, triangles, frame };
+        let mut tree = Self { nodes: Vec::new(), points, place, triangles, frame };
         tree.fill();
         (tree, order)
     }
@@ -125,7 +125,10 @@ impl Tree {
     /// Fills the nodes from the triangles.
     fn fill(&mut self) {
         let Self { nodes, points, triangles, frame, .. } = self;
-        Part { nodes, number: 0, triangles, start: 0 }.fill(&Scene { frame, points });
+        let mut counts = NodeCounts::default();
+        // A single triangle has a node as well.
+        nodes.resize(count_nodes(triangles.len(), &mut counts).max(1), Node::EMPTY);
+        Part { nodes, number: 0, triangles, start: 0 }.fill(&Scene { frame, points, counts });
     }
 
     /// All points: first those that triangles use.
@@ -340,14 +343,26 @@ fn first_half(count: usize) -> usize {
     if middle > WIDTH { middle.next_multiple_of(WIDTH).min(count) } else { middle }
 }
 
-/// How many nodes there are over `count` triangles, two or more.
-fn node_count(count: usize) -> usize {
+/// How many nodes there are over so many triangles, two or more: by number of triangles. Parts of
+/// one level have few different ones.
+type NodeCounts = FxHashMap<usize, usize>;
+
+/// Notes how many nodes there are over `count` triangles and over all parts of them.
+fn count_nodes(count: usize, counts: &mut NodeCounts) -> usize {
+    if count <= 1 {
+        return 0;
+    }
+    if let Some(&known) = counts.get(&count) {
+        return known;
+    }
     let left = first_half(count);
     let quarters = [left, count - left].map(|half| {
         let first = first_half(half);
         [first, half - first]
     });
-    1 + quarters.as_flattened().iter().filter(|&&n| n > 1).map(|&n| node_count(n)).sum::<usize>()
+    let below: usize = quarters.as_flattened().iter().map(|&n| count_nodes(n, counts)).sum();
+    counts.insert(count, 1 + below);
+    1 + below
 }
 
 /// A triangle that is to be put in order. What a split compares lies side by side, so that nothing
@@ -420,6 +435,7 @@ fn in_order_of_use(points: &[Point], corners: &mut [u32]) -> (Vec<Point>, Vec<u3
 struct Scene<'a> {
     frame: &'a Frame,
     points: &'a [Point],
+    counts: NodeCounts,
 }
 
 /// A part of the tree whose nodes are to be filled.
@@ -447,7 +463,7 @@ impl Part<'_> {
         let (mut number, mut start) = (number + 1, start);
         let mut codes = [0; WIDTH];
         let parts = [a, b, c, d].map(|triangles| {
-            let count = if triangles.len() > 1 { node_count(triangles.len()) } else { 0 };
+            let count = scene.counts.get(&triangles.len()).copied().unwrap_or(0);
             let (own, rest) = std::mem::take(&mut nodes).split_at_mut(count);
             nodes = rest;
             let part = Part { nodes: own, number, triangles, start };
