@@ -4,6 +4,7 @@
 //! these tallies, so that they can not disagree about what a component is.
 
 use crate::mesh::{DisjointSets, NONE, PolyMesh, Topology};
+use rayon::prelude::*;
 use serde::Serialize;
 
 /// What one component of the cut mesh counts.
@@ -179,8 +180,22 @@ impl Components {
 
 /// Two-sided edges of the cut mesh, each as its two half-edges, the smaller first.
 pub(super) fn partner_pairs(topology: &Topology) -> impl Iterator<Item = (usize, usize)> + '_ {
-    let pair = |(h, &t): (usize, &u32)| (t != NONE && h < t as usize).then_some((h, t as usize));
-    topology.twin.iter().enumerate().filter_map(pair)
+    (0..topology.twin.len()).filter_map(|h| pair(topology, h))
+}
+
+/// Those of [`partner_pairs`] that are `wanted`, in the same order. Parallel.
+pub(super) fn partner_pairs_where(
+    topology: &Topology,
+    wanted: impl Fn(usize, usize) -> bool + Sync,
+) -> Vec<(usize, usize)> {
+    let halves = (0..topology.twin.len()).into_par_iter();
+    halves.filter_map(|h| pair(topology, h).filter(|&(h, t)| wanted(h, t))).collect()
+}
+
+/// A half-edge and its partner, if that is the larger one.
+fn pair(topology: &Topology, h: usize) -> Option<(usize, usize)> {
+    let t = topology.twin[h];
+    (t != NONE && h < t as usize).then_some((h, t as usize))
 }
 
 /// A count as a signed number; counts stay far below 2^63.

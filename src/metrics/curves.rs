@@ -5,15 +5,18 @@
 //! feature angle counts, noise creases too: this is a measure, not the choice of the features
 //! that an edit respects.
 
-use super::components::partner_pairs;
+use super::components::partner_pairs_where;
 use super::shape::Shape;
 use super::stats::{max, mean, percentile, share};
-use crate::mesh::{NONE, Point, PolyMesh, Topology, Vector};
-use crate::surface::Segments;
+use crate::mesh::{NONE, Point, PolyMesh, Topology};
+use crate::surface::{Segments, area_vectors};
+use rayon::prelude::*;
 use serde::Serialize;
 
 /// Most samples on one edge.
 const MOST_SAMPLES: f64 = 200.0;
+/// What bounds are widened by: far more than they are rounded.
+const MARGIN: f64 = 1.0 + 1e-9;
 
 /// Curves of a reference: segments between two points.
 #[derive(Debug)]
@@ -25,7 +28,7 @@ pub(super) struct Lines {
 impl Lines {
     /// Edges of `mesh` where the surface turns by more than `angle_deg`, and edges of one face.
     pub(super) fn new(mesh: &PolyMesh, topology: &Topology, angle_deg: f64) -> Self {
-        let areas: Vec<Vector> = (0..mesh.face_count()).map(|f| mesh.area_vector(f)).collect();
+        let areas = area_vectors(mesh);
         let area = |h: usize| &areas[topology.face[h] as usize];
         let turn_deg = |h: usize, t: usize| {
             let (m, n) = (area(h), area(t));
@@ -34,8 +37,9 @@ impl Lines {
         };
         let point = |h: usize| mesh.points()[mesh.corners()[h] as usize];
         let ends = |h: usize| [point(h), point(topology.next[h] as usize)];
-        let sharp = partner_pairs(topology).filter(|&(h, t)| turn_deg(h, t) > angle_deg);
-        Self { sharp: sharp.map(|(h, _)| ends(h)).collect(), border: single(topology, ends) }
+        let sharp = partner_pairs_where(topology, |h, t| turn_deg(h, t) > angle_deg);
+        let sharp = sharp.into_iter().map(|(h, _)| ends(h)).collect();
+        Self { sharp, border: single(topology, ends) }
     }
 }
 
@@ -65,8 +69,7 @@ pub struct CurveDistance {
 }
 
 impl CurveDistance {
-    fn new(points: &[Point], to: &[[Point; 2]], edge: f64, diagonal: f64) -> Option<Self> {
-        let mut distances = Segments::new(to).0.distances(points);
+    fn new(mut distances: Vec<f64>, edge: f64, diagonal: f64) -> Option<Self> {
         let mean = mean(&distances)?;
         let near = distances.iter().filter(|&&d| d < 0.1 * edge).count();
         Some(Self {
@@ -113,13 +116,13 @@ impl Features {
         if !lines.sharp.is_empty() {
             let edge = mean_half_edge(shape);
             let points = points_along(&lines.sharp, step(edge, diagonal));
-            let edges = shape.topology.edges.iter();
-            let all: Vec<_> = edges.map(|&h| shape.segment(h as usize)).collect();
+            let any = segments_near(shape, &points).distances(&points);
+            features.to_any_mesh_edge = CurveDistance::new(any, edge, diagonal);
             let sharp = sharp_segments(shape, angle_deg / 2.0);
-            features.to_any_mesh_edge = CurveDistance::new(&points, &all, edge, diagonal);
             features.mesh_sharp_edges = Some(sharp.len());
             if !sharp.is_empty() {
-                features.to_sharp_mesh_edge = CurveDistance::new(&points, &sharp, edge, diagonal);
+                let distances = Segments::new(&sharp).0.distances(&points);
+                features.to_sharp_mesh_edge = CurveDistance::new(distances, edge, diagonal);
             }
         }
         features
@@ -185,8 +188,26 @@ fn sharp_segments(shape: &Shape, angle_deg: f64) -> Vec<[Point; 2]> {
     let normal = |h: usize| &shape.normals[shape.topology.face[h] as usize];
     let flat = angle_deg.to_radians().cos();
     let is_flat = |h: usize, t: usize| normal(h).dot(normal(t)) > flat;
-    let pairs = partner_pairs(shape.topology);
-    pairs.filter(|&(h, t)| !is_flat(h, t)).map(|(h, _)| shape.segment(h)).collect()
+    let pairs = partner_pairs_where(shape.topology, |h, t| !is_flat(h, t));
+    pairs.into_iter().map(|(h, _)| shape.segment(h)).collect()
+}
+
+/// Edges of the mesh, among them the closest to each of the points: a tree of all of them takes
+/// longer than all that is asked of it. Every so manieth edge tells how far away the others may be.
+fn segments_near(shape: &Shape, points: &[Point]) -> Segments {
+    const EVERY: usize = 16;
+    let edges = &shape.topology.edges;
+    let segment = |&h: &u32| shape.segment(h as usize);
+    let some: Vec<_> = edges.iter().step_by(EVERY).map(segment).collect();
+    let reach = max(&Segments::new(&some).0.distances(points)).unwrap_or(0.0);
+    let places: Vec<_> = points.iter().map(|&p| [p, p]).collect();
+    let (places, _) = Segments::new(&places);
+    let is_near = |[a, b]: &[Point; 2]| {
+        let radius = MARGIN * (reach + 0.5 * (b - a).norm());
+        places.is_within(&nalgebra::center(a, b), radius)
+    };
+    let near: Vec<_> = edges.par_iter().map(segment).filter(is_near).collect();
+    Segments::new(&near).0
 }
 
 /// Mean over half-edges: interior edges count twice.

@@ -11,6 +11,7 @@ use super::stats::{Spread, share};
 use super::{MeasureOptions, MetricsError, connectivity};
 use crate::mesh::{Point, PolyMesh, Topology};
 use crate::surface::Reference;
+use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -119,6 +120,10 @@ impl ReferenceMetrics {
         drop(own);
         let ref_to_mesh = OneWay::new(&back, target.sample_count, diagonal);
         let angle = target.options.feature_angle_deg;
+        let (features, boundary) = rayon::join(
+            || Features::new(shape, &target.lines, angle, diagonal),
+            || Boundary::new(shape, &target.lines, diagonal),
+        );
         Ok(Self {
             distance_backend: "exact",
             reference_bbox_diagonal: diagonal,
@@ -127,8 +132,8 @@ impl ReferenceMetrics {
             mesh_to_ref,
             ref_to_mesh,
             orientation,
-            features: Features::new(shape, &target.lines, angle, diagonal),
-            boundary: Boundary::new(shape, &target.lines, diagonal),
+            features,
+            boundary,
         })
     }
 }
@@ -182,7 +187,7 @@ impl Orientation {
     /// `at_centres` has the triangle of `surface` that is nearest to the centre of each face.
     fn new(shape: &Shape, surface: &Reference, at_centres: &[u32]) -> Self {
         let alike = |(n, &t): (&crate::mesh::Vector, &u32)| n.dot(&surface.normal(t));
-        let cosines: Vec<f64> = shape.normals.iter().zip(at_centres).map(alike).collect();
+        let cosines: Vec<f64> = shape.normals.par_iter().zip(at_centres).map(alike).collect();
         // At a crease several triangles are nearest, and which of them is found says nothing. The
         // normal of a face without area is NaN: such a face looks nowhere and counts as well.
         let looks_along = |&f: &usize| {
@@ -191,7 +196,8 @@ impl Orientation {
             let facing = surface.closest_facing(centre, normal, near, reach).triangle;
             surface.normal(facing).dot(normal) >= 0.0
         };
-        let right = (0..cosines.len()).filter(|f| cosines[*f] >= 0.0 || looks_along(f)).count();
+        let faces = (0..cosines.len()).into_par_iter();
+        let right = faces.filter(|f| cosines[*f] >= 0.0 || looks_along(f)).count();
         let flipped_faces = cosines.len() - right;
         let angle = |c: &f64| c.clamp(-1.0, 1.0).acos().to_degrees();
         Self {

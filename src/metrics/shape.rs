@@ -5,6 +5,7 @@
 //! no length leaves undefined is NaN, and each measure says what it makes of that.
 
 use crate::mesh::{Point, PolyMesh, Topology, Vector};
+use crate::surface::area_vectors;
 use rayon::prelude::*;
 
 /// A mesh with its derived geometry.
@@ -31,21 +32,19 @@ pub(super) struct Shape<'a> {
 impl<'a> Shape<'a> {
     /// Computes it. O(n) for n corners, in parallel.
     pub(super) fn new(mesh: &'a PolyMesh, topology: &'a Topology) -> Self {
-        let faces = 0..mesh.face_count();
-        let vectors: Vec<Vector> =
-            faces.clone().into_par_iter().map(|f| mesh.area_vector(f)).collect();
-        let areas: Vec<f64> = vectors.iter().map(Vector::norm).collect();
-        let normals: Vec<Vector> = vectors.iter().zip(&areas).map(|(v, a)| v / *a).collect();
+        let vectors = area_vectors(mesh);
+        let areas: Vec<f64> = vectors.par_iter().map(Vector::norm).collect();
+        let normals: Vec<Vector> = vectors.par_iter().zip(&areas).map(|(v, a)| v / *a).collect();
         let corner = |c: usize| corner(mesh, topology, &normals, c);
         let corners: Vec<Corner> = (0..mesh.corner_count()).into_par_iter().map(corner).collect();
         Self {
             mesh,
             topology,
             diagonal: mesh.diagonal(),
-            centres: faces.map(|f| mesh.centre(f)).collect(),
-            lengths: corners.iter().map(|c| c.length).collect(),
-            angles_deg: corners.iter().map(|c| c.angle_deg).collect(),
-            jacobians: corners.iter().map(|c| c.jacobian).collect(),
+            centres: (0..mesh.face_count()).into_par_iter().map(|f| mesh.centre(f)).collect(),
+            lengths: corners.par_iter().map(|c| c.length).collect(),
+            angles_deg: corners.par_iter().map(|c| c.angle_deg).collect(),
+            jacobians: corners.par_iter().map(|c| c.jacobian).collect(),
             areas,
             normals,
         }

@@ -14,6 +14,7 @@ mod tree;
 pub(crate) mod trial;
 mod triangulation;
 
+pub(crate) use features::area_vectors;
 pub use features::{
     Crease, FeatureOptions, SharpLines, mean_edge, mesh_features, vertices_on_lines,
 };
