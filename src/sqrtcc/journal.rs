@@ -3,7 +3,7 @@
 
 use super::{Quad, QuadMesh, Vertex};
 use crate::mesh::Point;
-use rayon::prelude::*;
+use fixedbitset::FixedBitSet;
 
 /// Entries for which memory is kept when they are forgotten.
 const KEPT: usize = 1 << 16;
@@ -100,20 +100,19 @@ impl QuadMesh {
     /// What was written since the journal was last cleared.
     #[must_use]
     pub fn changes(&self) -> Changes {
-        let mut changes = Changes::default();
+        let mut vertices = FixedBitSet::with_capacity(self.out.len());
+        let mut quads = FixedBitSet::with_capacity(self.kind.len());
         for entry in &self.journal.entries {
+            let i = entry.index as usize;
             match entry.slot {
-                Slot::Origin | Slot::Twin => changes.quads.push(Self::quad(entry.index)),
-                Slot::Ideal => changes.quads.push(entry.index / 2),
-                Slot::Out | Slot::Valence | Slot::Position => changes.vertices.push(entry.index),
+                Slot::Origin | Slot::Twin => quads.insert(i / 4),
+                Slot::Ideal => quads.insert(i / 2),
+                Slot::Out | Slot::Valence | Slot::Position => vertices.insert(i),
                 Slot::NewVertex | Slot::NewQuad => (),
             }
         }
-        for list in [&mut changes.vertices, &mut changes.quads] {
-            list.par_sort_unstable();
-            list.dedup();
-        }
-        changes
+        let listed = |set: FixedBitSet| set.ones().map(|i| i as u32).collect();
+        Changes { vertices: listed(vertices), quads: listed(quads) }
     }
 
     /// Takes over from `original`, of which this is a copy, what has been written there since:

@@ -5,6 +5,7 @@
 //! whole construction; vertex v keeps its number and face f becomes vertex V + f.
 
 use super::QuadMesh;
+use super::journal::Journal;
 use super::quad_mesh::{FACE, GHOST, HELD, QuadKind};
 use crate::mesh::{NONE, Point, PolyMesh, Topology};
 use fixedbitset::FixedBitSet;
@@ -48,9 +49,16 @@ pub enum LiftError {
 /// Lifts a clean polygon mesh to the √CC domain. `features` marks the corners whose edge is a
 /// sharp feature (either side suffices). O(corners).
 pub fn lift(mesh: &PolyMesh, features: &FixedBitSet) -> Result<QuadMesh, LiftError> {
-    let topology = Topology::new(mesh);
-    refuse_unclean(mesh, &topology)?;
-    let closed = Closed::new(mesh, &topology);
+    lift_connected((mesh, &Topology::new(mesh)), features)
+}
+
+/// [`lift`], where the connectivity of the mesh is known.
+pub(crate) fn lift_connected(
+    (mesh, topology): (&PolyMesh, &Topology),
+    features: &FixedBitSet,
+) -> Result<QuadMesh, LiftError> {
+    refuse_unclean(mesh, topology)?;
+    let closed = Closed::new(mesh, topology);
     let mut q = closed.quad_mesh(mesh, features);
     q.hold_frozen_ends();
     for ideal in q.measured_ideals() {
@@ -143,42 +151,58 @@ impl Closed {
     }
 
     fn quad_mesh(&self, mesh: &PolyMesh, features: &FixedBitSet) -> QuadMesh {
-        let mut q = QuadMesh::default();
-        for v in 0..self.vertices {
-            let ghost = v as usize >= mesh.vertex_count();
-            let position = mesh.points().get(v as usize).copied().unwrap_or_else(Point::origin);
-            q.add_vertex(if ghost { GHOST } else { 0 }, 0, position);
-        }
-        for f in 0..self.faces {
-            let group = mesh.groups().get(f as usize);
-            let class = if group.is_some() { FACE } else { FACE | GHOST };
-            q.add_vertex(class, group.copied().unwrap_or(0), Point::origin());
-        }
-        let slots = self.add_quads(&mut q, features);
+        let (vertices, quads) = (self.vertices + self.faces, self.vertex.len() / 2);
+        // Nothing of this is ever undone: it does without the journal, which would take more memory
+        // than the mesh.
+        let mut q = QuadMesh {
+            origin: vec![NONE; 4 * quads],
+            twin: vec![NONE; 4 * quads],
+            kind: Vec::with_capacity(quads),
+            ideal: vec![0; 2 * quads],
+            out: vec![NONE; vertices as usize],
+            valence: vec![0; vertices as usize],
+            class: self.classes(mesh),
+            group: vec![0; self.vertices as usize],
+            position: mesh.points().to_vec(),
+            journal: Journal::default(),
+        };
+        q.group.extend(mesh.groups());
+        q.group.resize(vertices as usize, 0);
+        q.position.resize(vertices as usize, Point::origin());
+        let slots = self.add_quads(&mut q.kind, features);
         for (c, &slot) in slots.iter().enumerate() {
-            let f = self.vertices + self.face[c];
-            q.set_origin(slot, f);
-            q.set_origin(QuadMesh::next(slot), self.vertex[c]);
-            q.set_out(f, slot);
-            q.set_out(self.vertex[c], QuadMesh::next(slot));
-            q.join(slot - 1, slots[self.next[c] as usize]);
-            q.valence[f as usize] += 1;
-            q.valence[self.vertex[c] as usize] += 1;
+            let (f, v) = ((self.vertices + self.face[c]) as usize, self.vertex[c] as usize);
+            let to_vertex = QuadMesh::next(slot);
+            (q.origin[slot as usize], q.origin[to_vertex as usize]) = (f as u32, v as u32);
+            (q.out[f], q.out[v]) = (slot, to_vertex);
+            let twin = slots[self.next[c] as usize];
+            (q.twin[slot as usize - 1], q.twin[twin as usize]) = (twin, slot - 1);
+            q.valence[f] += 1;
+            q.valence[v] += 1;
         }
         q
     }
 
+    /// What each vertex of Q is: vertices, their ghosts, faces, theirs.
+    fn classes(&self, mesh: &PolyMesh) -> Vec<u32> {
+        let (vertices, faces) = (mesh.vertex_count(), mesh.face_count());
+        let ghosts = self.vertices as usize - vertices;
+        let ghost_faces = self.faces as usize - faces;
+        let runs = [(0, vertices), (GHOST, ghosts), (FACE, faces), (FACE | GHOST, ghost_faces)];
+        runs.into_iter().flat_map(|(class, count)| std::iter::repeat_n(class, count)).collect()
+    }
+
     /// A quad for each pair of twin corners; the half-edge face→vertex that each corner owns.
-    fn add_quads(&self, q: &mut QuadMesh, features: &FixedBitSet) -> Vec<u32> {
+    fn add_quads(&self, kinds: &mut Vec<u32>, features: &FixedBitSet) -> Vec<u32> {
         let mut slots = vec![NONE; self.vertex.len()];
         for (c, &t) in self.twin.iter().enumerate() {
             if slots[c] != NONE {
                 continue;
             }
-            let quad = q.add_quad();
+            let quad = kinds.len() as u32;
             slots[c] = 4 * quad + 3;
             slots[t as usize] = 4 * quad + 1;
-            q.kind[quad as usize] = self.edge_kind(c as u32, t, features) as u32;
+            kinds.push(self.edge_kind(c as u32, t, features) as u32);
         }
         slots
     }

@@ -14,6 +14,7 @@ mod sector;
 pub use check::Violation;
 pub use ideal::Ideal;
 pub use journal::{Changes, Mark};
+pub(crate) use lift::lift_connected;
 pub use lift::{LiftError, lift};
 pub use lower::{Lowered, lower};
 pub use quad_mesh::{HalfEdge, Quad, QuadKind, QuadMesh, Vertex};
