@@ -10,9 +10,12 @@
 //! Merged p-vertices are an edge collapse of the polygon mesh, merged d-vertices an edge deletion.
 //! Source: Peng & Wonka 2013, section 3.2.
 
-use super::{Legal, MAX_VALENCE, MIN_VALENCE, Refusal, alive, change, debug_check, may_lose};
+use super::{
+    Legal, MAX_VALENCE, MIN_VALENCE, Refusal, alive, change, debug_check, may_lose, within,
+};
 use crate::sqrtcc::{HalfEdge, QuadMesh, Vertex};
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 /// Merges the origin of `edge` with the corner across its quad.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -26,6 +29,11 @@ impl Collapse {
     /// Legal if the quad is not frozen, the two corners have no other neighbour in common, at
     /// most one of them is held, and valences stay in range.
     pub fn check(self, mesh: &QuadMesh) -> Result<Legal<Self>, Refusal> {
+        self.check_up_to(i32::MAX, mesh)
+    }
+
+    /// [`Self::check`], which also refuses what would add more than `most` to E.
+    pub(super) fn check_up_to(self, most: i32, mesh: &QuadMesh) -> Result<Legal<Self>, Refusal> {
         let h = self.edge;
         alive(mesh, h)?;
         if mesh.is_frozen(QuadMesh::quad(h)) {
@@ -45,15 +53,16 @@ impl Collapse {
         if !(MIN_VALENCE..=MAX_VALENCE).contains(&merged) {
             return Err(Refusal::Valence);
         }
-        if meets_twice(mesh, [a, b, c, d]) {
-            return Err(Refusal::DoubleEdge);
-        }
         let (kept, gone) = if mesh.is_held(c) { (hc, ha) } else { (ha, hc) };
         let gone_excess = mesh.excess(gone);
         // Merging adds valence(gone) − 2 = excess(gone) + 2 edges to the sector of the kept one.
         let delta = change(mesh, kept, gone_excess + 2) - gone_excess.abs()
             + change(mesh, hb, -1)
             + change(mesh, hd, -1);
+        within(most, delta)?;
+        if meets_twice(mesh, [a, b, c, d]) {
+            return Err(Refusal::DoubleEdge);
+        }
         Ok(Legal { op: self, delta })
     }
 
@@ -70,11 +79,10 @@ impl Collapse {
 
 /// Whether a and c have a neighbour other than b and d, or a diagonal neighbour, in common.
 pub(super) fn meets_twice(mesh: &QuadMesh, [a, b, c, d]: [Vertex; 4]) -> bool {
-    let joined = mesh
-        .neighbours(a)
-        .filter(|&v| v != b && v != d)
-        .any(|v| mesh.neighbours(c).any(|w| w == v));
-    joined || mesh.diagonals(a).any(|v| v != c && mesh.diagonals(c).any(|w| w == v))
+    let beside: SmallVec<[Vertex; 8]> = mesh.neighbours(c).collect();
+    let across: SmallVec<[Vertex; 8]> = mesh.diagonals(c).collect();
+    mesh.neighbours(a).any(|v| v != b && v != d && beside.contains(&v))
+        || mesh.diagonals(a).any(|v| v != c && across.contains(&v))
 }
 
 /// Merges the corner across the quad of `h` with its origin, which stays where it is if it is

@@ -15,6 +15,7 @@
 
 use super::{
     Legal, Refusal, alive, are_diagonal, are_joined, change, debug_check, may_gain, may_lose,
+    within,
 };
 use crate::sqrtcc::{HalfEdge, QuadMesh, Vertex};
 use serde::{Deserialize, Serialize};
@@ -50,6 +51,11 @@ impl Flip {
     /// Legal if six corners differ, no valence leaves its range, the shifted edge is not frozen
     /// and nothing would be joined twice.
     pub fn check(self, mesh: &QuadMesh) -> Result<Legal<Self>, Refusal> {
+        self.check_up_to(i32::MAX, mesh)
+    }
+
+    /// [`Self::check`], which also refuses what would add more than `most` to E.
+    pub(super) fn check_up_to(self, most: i32, mesh: &QuadMesh) -> Result<Legal<Self>, Refusal> {
         let h = self.edge;
         alive(mesh, h)?;
         let t = mesh.twin(h);
@@ -76,14 +82,15 @@ impl Flip {
         may_lose(mesh, a3)?;
         may_gain(mesh, mesh.origin(from))?;
         may_gain(mesh, mesh.origin(to))?;
+        let delta =
+            change(mesh, h, -1) + change(mesh, t, -1) + change(mesh, from, 1) + change(mesh, to, 1);
+        within(most, delta)?;
         if are_joined(mesh, mesh.origin(from), mesh.origin(to))
             || are_diagonal(mesh, a1, a5)
             || are_diagonal(mesh, a2, a4)
         {
             return Err(Refusal::DoubleEdge);
         }
-        let delta =
-            change(mesh, h, -1) + change(mesh, t, -1) + change(mesh, from, 1) + change(mesh, to, 1);
         Ok(Legal { op: self, delta })
     }
 

@@ -54,6 +54,9 @@ pub enum Refusal {
     /// Both vertices are held in place, or a pin would have no place left.
     #[error("what is held in place would have to move")]
     Held,
+    /// E would grow by more than the caller wants.
+    #[error("there would be more irregular elements than are wanted")]
+    Costly,
     /// Corners that must differ are the same.
     #[error("the neighbourhood is too small")]
     TooSmall,
@@ -90,10 +93,16 @@ pub enum Op {
 impl Op {
     /// Whether the operation may be applied, and what it would do to E.
     pub fn check(self, mesh: &QuadMesh) -> Result<Legal<Self>, Refusal> {
+        self.check_up_to(i32::MAX, mesh)
+    }
+
+    /// [`Self::check`], which also refuses what would add more than `most` to E: that is known
+    /// before the neighbourhood has been searched.
+    pub fn check_up_to(self, most: i32, mesh: &QuadMesh) -> Result<Legal<Self>, Refusal> {
         let delta = match self {
-            Self::Flip(op) => op.check(mesh)?.delta,
-            Self::Collapse(op) => op.check(mesh)?.delta,
-            Self::Split(op) => op.check(mesh)?.delta,
+            Self::Flip(op) => op.check_up_to(most, mesh)?.delta,
+            Self::Collapse(op) => op.check_up_to(most, mesh)?.delta,
+            Self::Split(op) => op.check_up_to(most, mesh)?.delta,
         };
         Ok(Legal { op: self, delta })
     }
@@ -141,6 +150,11 @@ pub(crate) fn rebased(id: u32, from: u32, to: u32) -> u32 {
 fn alive(mesh: &QuadMesh, h: HalfEdge) -> Result<(), Refusal> {
     let known = h >> 2 < mesh.quad_ids() && mesh.origin(h) != NONE;
     known.then_some(()).ok_or(Refusal::Gone)
+}
+
+/// Refuses a change of E above `most`.
+fn within(most: i32, delta: i32) -> Result<(), Refusal> {
+    (delta <= most).then_some(()).ok_or(Refusal::Costly)
 }
 
 /// Whether `v` may lose one edge.

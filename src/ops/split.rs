@@ -13,6 +13,7 @@
 
 use super::{
     Legal, MAX_VALENCE, MIN_VALENCE, Refusal, alive, are_diagonal, change, debug_check, may_gain,
+    within,
 };
 use crate::mesh::{Point, Vector};
 use crate::sqrtcc::{HalfEdge, QuadMesh, Vertex};
@@ -32,6 +33,11 @@ impl Split {
     /// Legal if both parts keep two edges or more, b and d are not diagonal yet, and no frozen
     /// quad of a held vertex would move.
     pub fn check(self, mesh: &QuadMesh) -> Result<Legal<Self>, Refusal> {
+        self.check_up_to(i32::MAX, mesh)
+    }
+
+    /// [`Self::check`], which also refuses what would add more than `most` to E.
+    pub(super) fn check_up_to(self, most: i32, mesh: &QuadMesh) -> Result<Legal<Self>, Refusal> {
         alive(mesh, self.first)?;
         alive(mesh, self.last)?;
         let v = mesh.origin(self.first);
@@ -50,14 +56,15 @@ impl Split {
         let (b, d) = (mesh.target(self.first), mesh.target(self.last));
         may_gain(mesh, b)?;
         may_gain(mesh, d)?;
-        if b == d || are_diagonal(mesh, b, d) {
-            return Err(Refusal::DoubleEdge);
-        }
         let stays = change(mesh, self.last, 1 - moved as i32);
         let delta = (new as i32 - 4).abs()
             + stays
             + change(mesh, mesh.twin(self.first), 1)
             + change(mesh, mesh.twin(self.last), 1);
+        within(most, delta)?;
+        if b == d || are_diagonal(mesh, b, d) {
+            return Err(Refusal::DoubleEdge);
+        }
         Ok(Legal { op: self, delta })
     }
 

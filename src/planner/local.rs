@@ -17,8 +17,8 @@ pub fn sequences(mesh: &mut QuadMesh, seed: Vertex, depth: u32, most: i32) -> Ve
     for op in around(mesh, seed) {
         if depth >= 2 {
             pairs(mesh, op, most, &mut found);
-        } else if let Some(delta) = op.check(mesh).ok().map(|l| l.delta()).filter(|&d| d <= most) {
-            found.push((delta, vec![op]));
+        } else if let Ok(legal) = op.check_up_to(most, mesh) {
+            found.push((legal.delta(), vec![op]));
         }
     }
     found.sort();
@@ -30,7 +30,7 @@ pub fn sequences(mesh: &mut QuadMesh, seed: Vertex, depth: u32, most: i32) -> Ve
 fn pairs(mesh: &mut QuadMesh, first: Op, most: i32, found: &mut Vec<(i32, Vec<Op>)>) {
     let mark = mesh.mark();
     // A first operation that costs four cannot be made good by one more.
-    let Some(legal) = first.check(mesh).ok().filter(|l| l.delta() <= 2) else { return };
+    let Ok(legal) = first.check_up_to(2, mesh) else { return };
     let cost = legal.delta();
     Op::apply(mesh, legal);
     for v in mesh.touched_since(mark) {
@@ -38,9 +38,8 @@ fn pairs(mesh: &mut QuadMesh, first: Op, most: i32, found: &mut Vec<(i32, Vec<Op
             continue;
         }
         for second in around(mesh, v) {
-            let delta = second.check(mesh).ok().map(|legal| cost + legal.delta());
-            if let Some(delta) = delta.filter(|&d| d <= most) {
-                found.push((delta, vec![first, second]));
+            if let Ok(legal) = second.check_up_to(most - cost, mesh) {
+                found.push((cost + legal.delta(), vec![first, second]));
             }
         }
     }

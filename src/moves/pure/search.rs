@@ -177,7 +177,7 @@ type Step = (Op, i32, Option<(Vertex, u32)>);
 fn steps(mesh: &QuadMesh, carrier: Vertex, kind: Kind) -> Vec<Step> {
     let mut found = Vec::new();
     for op in around(mesh, carrier) {
-        let Some(legal) = op.check(mesh).ok().filter(|l| l.delta() <= MOST_DELTA) else { continue };
+        let Ok(legal) = op.check_up_to(MOST_DELTA, mesh) else { continue };
         let Some(effect) = Effect::of(mesh, op, kind) else { continue };
         if !effect.before.contains(&carrier) {
             continue;
