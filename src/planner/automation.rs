@@ -59,7 +59,7 @@ impl Automation<'_> {
     /// Edits and smooths `mesh`; what was done. If cancelled, no more edits are looked for, and the
     /// mesh is smoothed for as many iterations as a hurried run has.
     pub fn run(&self, mesh: &mut QuadMesh, watch: &dyn Watch) -> Result<Schedule, MeshError> {
-        let faces = faces(mesh).count();
+        let faces = faces(mesh).len();
         let size =
             Size { start: self.faces as i64, now: faces as i64, drift: self.plan.size_drift };
         let mut schedule = Schedule::new(size);
@@ -167,12 +167,11 @@ impl Automation<'_> {
 
     /// Whether there is anything to do in a stage of the kinds that come last.
     fn has_seeds(&self, mesh: &QuadMesh, stage: Stage) -> bool {
-        let faces: Vec<Vertex> = faces(mesh).collect();
         let is_seed = |&f: &Vertex| match stage {
             Stage::Types => t_junctions(mesh, &[f]) > 0,
             _ => is_poor(mesh, f, self.gate.min_jacobian),
         };
-        faces.par_iter().any(is_seed)
+        faces(mesh).par_iter().any(is_seed)
     }
 
     /// Most faces of a patch in stage `i`: no patch is most of the mesh.
@@ -196,9 +195,9 @@ impl Automation<'_> {
     /// there were any.
     fn release_pins(&self, mesh: &mut QuadMesh) -> bool {
         let is_poor = |&f: &Vertex| is_poor(mesh, f, self.gate.min_jacobian);
-        let poor = mesh.vertices().filter(is_poor);
-        let pins: Vec<Vertex> =
-            poor.flat_map(|f| mesh.neighbours(f)).filter(|&v| mesh.is_pin(v)).collect();
+        let poor: Vec<Vertex> = faces(mesh).into_par_iter().filter(is_poor).collect();
+        let corners = poor.iter().flat_map(|&f| mesh.neighbours(f));
+        let pins: Vec<Vertex> = corners.filter(|&v| mesh.is_pin(v)).collect();
         unpin(mesh, &pins);
         !pins.is_empty()
     }
@@ -305,9 +304,10 @@ impl Automation<'_> {
     }
 }
 
-/// The faces of the polygon mesh.
-fn faces(mesh: &QuadMesh) -> impl Iterator<Item = Vertex> + '_ {
-    mesh.vertices().filter(|&f| mesh.is_face(f))
+/// The faces of the polygon mesh. Parallel.
+fn faces(mesh: &QuadMesh) -> Vec<Vertex> {
+    let all = (0..mesh.vertex_ids()).into_par_iter();
+    all.filter(|&f| mesh.is_alive(f) && mesh.is_face(f) && !mesh.is_ghost(f)).collect()
 }
 
 /// Lets vertices move again.
@@ -319,12 +319,12 @@ fn unpin(mesh: &mut QuadMesh, pins: &[Vertex]) {
 
 /// Number of corners of all faces.
 fn corners(mesh: &QuadMesh) -> f64 {
-    faces(mesh).map(|f| f64::from(mesh.valence(f))).sum()
+    faces(mesh).iter().map(|&f| f64::from(mesh.valence(f))).sum()
 }
 
 /// Σ |angle − ideal| over all corners, degrees. Parallel.
 fn angles(mesh: &QuadMesh) -> f64 {
-    let all: Vec<Vertex> = faces(mesh).collect();
+    let all = faces(mesh);
     let chunks = all.par_chunks(CHUNK).map(|part| shape_of(mesh, part.iter().copied()).angles());
     // Added in order: the sum does not depend on threads.
     chunks.collect::<Vec<f64>>().into_iter().sum()

@@ -453,15 +453,15 @@ impl Spacing {
         }
         self.queue.clear();
         self.queue.push((v, steps + 1));
+        self.taken[v as usize] = steps + 1;
         let mut next = 0;
         while let Some(&(v, left)) = self.queue.get(next) {
             next += 1;
-            if self.taken[v as usize] >= left || mesh.is_ghost(v) {
-                continue;
-            }
-            self.taken[v as usize] = left;
-            if left > 1 {
-                self.queue.extend(mesh.neighbours(v).map(|w| (w, left - 1)));
+            for w in mesh.neighbours(v).filter(|_| left > 1) {
+                if self.taken[w as usize] < left - 1 && !mesh.is_ghost(w) {
+                    self.taken[w as usize] = left - 1;
+                    self.queue.push((w, left - 1));
+                }
             }
         }
         true
