@@ -18,7 +18,7 @@ use self::feed::Feed;
 use self::statements::Statements;
 use super::fault::{Located, whole};
 use super::soup::{Content, Tally};
-use super::text::{Lines, excerpt, write_number};
+use super::text::{Lines, excerpt, write_number, write_rows};
 use super::{Colour, Format, ReadFault, ReadOptions};
 use crate::mesh::{Point, PolyMesh};
 
@@ -86,28 +86,27 @@ fn offsets(arities: &[u32], faces: usize) -> Vec<u32> {
 
 /// Colours are three more numbers on each `v` line, which Blender, `MeshLab` and others understand.
 fn write(mesh: &PolyMesh, colours: Option<&[Colour]>, out: &mut dyn Write) -> io::Result<()> {
-    for (v, point) in mesh.points().iter().enumerate() {
+    write_rows(out, mesh.vertex_count(), |v, out| {
         out.write_all(b"v")?;
-        let mut numbers = point.iter().chain(colours.map_or(&[][..], |c| &c[v]));
+        let mut numbers = mesh.points()[v].iter().chain(colours.map_or(&[][..], |c| &c[v]));
         numbers.try_for_each(|&x| write_number(out, x))?;
-        out.write_all(b"\n")?;
-    }
+        out.write_all(b"\n")
+    })?;
     write_faces(mesh, out)
 }
 
 /// The faces, with a line where another group begins.
 fn write_faces(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
-    let mut group = None;
-    let grouped = mesh.groups().iter().any(|&g| !mesh.group_names()[g as usize].is_empty());
-    for (face, &g) in mesh.faces().zip(mesh.groups()) {
-        if grouped && group.replace(g) != Some(g) {
-            writeln!(out, "{}", group_line(&mesh.group_names()[g as usize]))?;
+    let groups = mesh.groups();
+    let grouped = groups.iter().any(|&g| !mesh.group_names()[g as usize].is_empty());
+    write_rows(out, mesh.face_count(), |f, out| {
+        if grouped && (f == 0 || groups[f] != groups[f - 1]) {
+            writeln!(out, "{}", group_line(&mesh.group_names()[groups[f] as usize]))?;
         }
         out.write_all(b"f")?;
-        face.iter().try_for_each(|&v| write!(out, " {}", v + 1))?;
-        out.write_all(b"\n")?;
-    }
-    Ok(())
+        mesh.face(f).iter().try_for_each(|&v| write!(out, " {}", v + 1))?;
+        out.write_all(b"\n")
+    })
 }
 
 /// The line that opens a group. What would not read back as part of a name is replaced.

@@ -8,7 +8,9 @@ use std::io::{self, BufRead, Write};
 
 use super::fault::{Located, whole};
 use super::soup::{Content, Soup};
-use super::text::{Lines, coordinates, excerpt, number, short_line, words, write_number};
+use super::text::{
+    Lines, coordinates, excerpt, number, short_line, words, write_number, write_rows,
+};
 use super::{Colour, Dropped, Format, ReadFault, ReadOptions};
 use crate::mesh::PolyMesh;
 
@@ -153,16 +155,15 @@ fn unknown_keyword(keyword: &[u8]) -> ReadFault {
 fn write(mesh: &PolyMesh, colours: Option<&[Colour]>, out: &mut dyn Write) -> io::Result<()> {
     let keyword = if colours.is_some() { "COFF" } else { "OFF" };
     writeln!(out, "{keyword}\n{} {} 0", mesh.vertex_count(), mesh.face_count())?;
-    for (v, point) in mesh.points().iter().enumerate() {
-        let numbers = point.iter().chain(colours.map_or(&[][..], |c| &c[v]));
-        write_row(out, numbers, colours.is_some())?;
-    }
-    for face in mesh.faces() {
-        write!(out, "{}", face.len())?;
-        face.iter().try_for_each(|v| write!(out, " {v}"))?;
-        out.write_all(b"\n")?;
-    }
-    Ok(())
+    write_rows(out, mesh.vertex_count(), |v, out| {
+        let numbers = mesh.points()[v].iter().chain(colours.map_or(&[][..], |c| &c[v]));
+        write_row(out, numbers, colours.is_some())
+    })?;
+    write_rows(out, mesh.face_count(), |f, out| {
+        write!(out, "{}", mesh.face(f).len())?;
+        mesh.face(f).iter().try_for_each(|v| write!(out, " {v}"))?;
+        out.write_all(b"\n")
+    })
 }
 
 /// Numbers between blanks; after colours, the opacity.

@@ -15,7 +15,9 @@ use self::header::{Element, Encoding, Header, Property, Scalar};
 use super::fault::{Located, whole};
 use super::soup::{Content, Soup};
 use super::source::read_exactly;
-use super::text::{Lines, check_end, excerpt, is_blank, number, short_line, words, write_number};
+use super::text::{
+    Lines, check_end, excerpt, is_blank, number, short_line, words, write_number, write_rows,
+};
 use super::{Colour, Dropped, Format, ReadFault, ReadOptions};
 use crate::mesh::PolyMesh;
 
@@ -249,23 +251,23 @@ fn write(
     // Some programs read no other lists than those of bytes; most faces are short enough.
     let long = u8::try_from(longest).is_err();
     write_header(mesh, colours.is_some(), (encoding, long), out)?;
-    for (v, point) in mesh.points().iter().enumerate() {
-        point.iter().try_for_each(|&x| write_double(x, encoding, out))?;
+    write_rows(out, mesh.vertex_count(), |v, out| {
+        mesh.points()[v].iter().try_for_each(|&x| write_double(x, encoding, out))?;
         for part in colours.map_or(&[][..], |c| &c[v]) {
             write_whole((part * 255.0).round() as u8, encoding, out)?;
         }
-        end_line(encoding, out)?;
-    }
-    for face in mesh.faces() {
+        end_line(encoding, out)
+    })?;
+    write_rows(out, mesh.face_count(), |f, out| {
+        let face = mesh.face(f);
         if long {
             write_whole(face.len() as u32, encoding, out)?;
         } else {
             write_whole(face.len() as u8, encoding, out)?;
         }
         face.iter().try_for_each(|&v| write_whole(v, encoding, out))?;
-        end_line(encoding, out)?;
-    }
-    Ok(())
+        end_line(encoding, out)
+    })
 }
 
 fn write_header(

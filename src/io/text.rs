@@ -5,6 +5,8 @@
 
 use std::io::{self, BufRead, Write};
 
+use rayon::prelude::*;
+
 use super::ReadFault;
 
 /// The lines of a file, one at a time.
@@ -182,6 +184,28 @@ pub(super) fn excerpt(text: &[u8]) -> String {
         short.push('…');
     }
     short
+}
+
+/// Writes `count` rows, each as `row` writes it. In parallel, in blocks: there are never many rows
+/// in memory.
+pub(super) fn write_rows(
+    out: &mut dyn Write,
+    count: usize,
+    row: impl Fn(usize, &mut dyn Write) -> io::Result<()> + Sync,
+) -> io::Result<()> {
+    const CHUNK: usize = 1 << 11;
+    const BLOCK: usize = 1 << 16;
+    for block in (0..count).step_by(BLOCK) {
+        let rows = |start: usize| {
+            let mut text = Vec::new();
+            let end = count.min(start + CHUNK);
+            (start..end).try_for_each(|i| row(i, &mut text)).map(|()| text)
+        };
+        let starts: Vec<usize> = (block..count.min(block + BLOCK)).step_by(CHUNK).collect();
+        let texts: Vec<io::Result<Vec<u8>>> = starts.into_par_iter().map(rows).collect();
+        texts.into_iter().try_for_each(|text| out.write_all(&text?))?;
+    }
+    Ok(())
 }
 
 /// Writes a space and the shortest decimal that reads back as `x`.
