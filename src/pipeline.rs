@@ -1,27 +1,26 @@
 //! The whole way: mend → lift → plan and edit → lower → measure.
 
 pub mod optimize;
+mod prepare;
 pub mod pure_quad;
 
 use crate::config::Config;
-use crate::mesh::{
-    Flaw, MendError, MendPolicy, MendReport, MeshError, PolyMesh, Topology, check, mend,
-};
-use crate::metrics::{Metrics, MetricsError, Target, measure};
+use crate::mesh::{Flaw, MendError, MendPolicy, MendReport, MeshError, PolyMesh, Topology};
+use crate::metrics::{Metrics, MetricsError, measure};
 use crate::moves::pure::Conversion;
 use crate::planner::automation::Automation;
 use crate::planner::edit::Edit;
 use crate::planner::gate::GateOptions;
 use crate::planner::schedule::{EditRecord, RoundRecord, Schedule};
 use crate::smooth;
-use crate::sqrtcc::{LiftError, QuadMesh, lift, lower};
+use crate::sqrtcc::{LiftError, QuadMesh, lift_connected, lower};
 use crate::surface::{
     self, Deviation, FeatureOptions, Reference, SharpLines, SurfaceError, mean_edge, mesh_features,
     vertices_on_lines,
 };
 use crate::watch::{Phase, Watch};
+use prepare::{Prepared, measure_clean};
 use serde::Serialize;
-use std::sync::Arc;
 use thiserror::Error;
 
 /// A mesh farther than this from its reference in the mean, relative to the diagonal of the
@@ -109,24 +108,25 @@ pub fn clean(
     config: &Config,
     watch: &dyn Watch,
 ) -> Result<Cleaned, CleanError> {
-    let raw = mesh.clone();
+    let (raw, faces) = (mesh.clone(), mesh.face_count());
     watch.progress(Phase::Reference, 0, 1, None);
-    let (mesh, mends, surface) = prepare(mesh, reference, policy)?;
-    let surface = Arc::new(surface);
-    watch.progress(Phase::Measure, 0, 2, None);
-    let target = Target::on(Arc::clone(&surface), reference.unwrap_or(&mesh), &config.measure);
-    let before = measure(&raw, Some(&target))?;
-    let faces = raw.face_count();
-    drop(raw);
-    let Edited { q, group_names, feature_edges, schedule, conversion } =
-        edit((mesh, faces), &surface, config, watch)?;
+    let mut prepared = Prepared::new(mesh, reference, policy)?;
+    let target = prepared.target(reference, config);
+    let mends = std::mem::take(&mut prepared.mends);
+    // Editing does not keep all threads at work all the time: measuring fills the gaps.
+    let measured = || {
+        let raw = raw;
+        measure(&raw, Some(&target))
+    };
+    let (before, edited) = rayon::join(measured, || edit(prepared, faces, config, watch));
+    let before = before?;
+    let Edited { q, group_names, feature_edges, schedule, conversion } = edited?;
     let stopped = watch.cancelled();
     let result = lower(&q, &group_names)?.mesh;
     drop(q);
-    check(&result).map_err(CleanError::Flawed)?;
-    watch.progress(Phase::Measure, 1, 2, None);
+    watch.progress(Phase::Measure, 0, 1, None);
     let Schedule { edits, rounds, .. } = schedule;
-    let after = measure(&result, Some(&target))?;
+    let after = measure_clean(&result, &target)?;
     Ok(Cleaned {
         mesh: result,
         report: Report { mends, feature_edges, before, after, edits, rounds, conversion, stopped },
@@ -154,22 +154,10 @@ pub fn plan(
 ) -> Result<Planned, CleanError> {
     let faces = mesh.face_count();
     watch.progress(Phase::Reference, 0, 1, None);
-    let (mesh, _, surface) = prepare(mesh, reference, policy)?;
-    let Edited { q, group_names, schedule, .. } = edit((mesh, faces), &surface, config, watch)?;
+    let prepared = Prepared::new(mesh, reference, policy)?;
+    let Edited { q, group_names, schedule, .. } = edit(prepared, faces, config, watch)?;
     let Schedule { edits, rounds, .. } = schedule;
     Ok(Planned { edits, rounds, mesh: lower(&q, &group_names)?.mesh })
-}
-
-/// Mends `mesh` and prepares the surface of `reference`, at the same time, or its own.
-fn prepare(
-    mesh: PolyMesh,
-    reference: Option<&PolyMesh>,
-    policy: MendPolicy,
-) -> Result<(PolyMesh, MendReport, Reference), CleanError> {
-    let (mended, given) = rayon::join(|| mend(mesh, policy), || reference.map(Reference::new));
-    let (mesh, mends) = mended?;
-    let surface = given.unwrap_or_else(|| Reference::new(&mesh))?;
-    Ok((mesh, mends, surface))
 }
 
 /// What was made of a mesh, still lifted.
@@ -183,25 +171,31 @@ struct Edited {
 
 /// Lifts, plans, edits and smooths a mended mesh that had so many faces before.
 fn edit(
-    (mesh, faces): (PolyMesh, usize),
-    reference: &Reference,
+    Prepared { mesh, topology, surface, .. }: Prepared,
+    faces: usize,
     config: &Config,
     watch: &dyn Watch,
 ) -> Result<Edited, CleanError> {
     watch.progress(Phase::Reference, 0, 1, None);
-    let topology = Topology::new(&mesh);
+    let reference = &*surface;
     let mean_edge = mean_edge(&mesh, &topology);
-    let budget = budget(&mesh, reference, (&config.gate, mean_edge))?;
-    let (mut q, feature_edges) = lift_held(&mesh, &topology, reference, &config.features)?;
+    // What extends lines is no crease by itself, and shorter than an edge there is none.
+    let sharp = FeatureOptions { min_chain_edges: 1.0, extend: 1.0, ..config.features.clone() };
+    let near = || {
+        let budget = budget(&mesh, reference, (&config.gate, mean_edge))?;
+        let orientation = smooth::orientation(&mesh, reference);
+        let lines = SharpLines::new(reference, &config.features, mean_edge);
+        let creases = SharpLines::new(reference, &sharp, mean_edge);
+        Ok::<_, CleanError>((budget, orientation, lines, creases))
+    };
+    let lifted = || lift_held(&mesh, &topology, reference, &config.features);
+    let (near, lifted) = rayon::join(near, lifted);
+    let (budget, orientation, lines, creases) = near?;
+    let (mut q, feature_edges) = lifted?;
     drop(topology);
-    let orientation = smooth::orientation(&mesh, reference);
     let group_names = mesh.group_names().to_vec();
     // From here on Q is the mesh.
     drop(mesh);
-    let lines = SharpLines::new(reference, &config.features, mean_edge);
-    // What extends lines is no crease by itself, and shorter than an edge there is none.
-    let sharp = FeatureOptions { min_chain_edges: 1.0, extend: 1.0, ..config.features.clone() };
-    let creases = SharpLines::new(reference, &sharp, mean_edge);
     let automation = Automation {
         reference,
         lines: &lines,
@@ -264,7 +258,7 @@ pub(crate) fn lift_held(
     options: &FeatureOptions,
 ) -> Result<(QuadMesh, usize), LiftError> {
     let features = mesh_features(mesh, topology, reference, options);
-    let mut q = lift(mesh, &features)?;
+    let mut q = lift_connected((mesh, topology), &features)?;
     for v in vertices_on_lines(mesh, topology, reference, options) {
         q.pin(v);
     }

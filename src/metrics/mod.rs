@@ -185,9 +185,16 @@ pub fn measure(mesh: &PolyMesh, target: Option<&Target>) -> Result<Metrics, Metr
     if mesh.face_count() == 0 {
         return Err(MetricsError::NoFaces);
     }
-    let topology = Topology::new(mesh);
-    let shape = Shape::new(mesh, &topology);
-    let own = || (TopologyMetrics::new(mesh, &topology), Quality::new(&shape));
+    measure_connected((mesh, &Topology::new(mesh)), target)
+}
+
+/// [`measure`] of a mesh with faces, where its connectivity is known.
+pub(crate) fn measure_connected(
+    (mesh, topology): (&PolyMesh, &Topology),
+    target: Option<&Target>,
+) -> Result<Metrics, MetricsError> {
+    let shape = Shape::new(mesh, topology);
+    let own = || (TopologyMetrics::new(mesh, topology), Quality::new(&shape));
     let distances = || target.map(|t| ReferenceMetrics::new(&shape, t)).transpose();
     let ((counts, quality), reference) = rayon::join(own, distances);
     let reference = reference?;

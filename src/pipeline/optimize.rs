@@ -1,6 +1,7 @@
 //! From a mesh to one with planar or equiangular faces: mend → optimise, on fixed connectivity.
 
-use super::{CleanError, budget, prepare};
+use super::prepare::Prepared;
+use super::{CleanError, budget};
 use crate::config::Config;
 use crate::mesh::{MendPolicy, MendReport, PolyMesh, Topology, check};
 use crate::optimize::{self, Fairness, Goal, Options};
@@ -61,17 +62,17 @@ pub fn optimize(
     watch: &dyn Watch,
 ) -> Result<Optimized, CleanError> {
     watch.progress(Phase::Reference, 0, 1, None);
-    let (mut mesh, mends, reference) = prepare(mesh, reference, policy)?;
-    let topology = Topology::new(&mesh);
-    let allowed = allowed(&mesh, &reference, config)?;
-    let held = held(&mesh, &topology, &reference, config);
-    let before = State::of(&mesh, &reference)?;
+    let Prepared { mut mesh, topology, mends, surface } = Prepared::new(mesh, reference, policy)?;
+    let reference = &*surface;
+    let allowed = allowed(&mesh, reference, config)?;
+    let held = held(&mesh, &topology, reference, config);
+    let before = State::of(&mesh, reference)?;
     let options =
         Options { optimize: &config.optimize, smooth: &config.smooth, relax: &config.relax };
-    let points = optimize::optimize(&mesh, &held, &reference, (goal, options), allowed, watch);
+    let points = optimize::optimize(&mesh, &held, reference, (goal, options), allowed, watch);
     mesh.set_points(points);
     check(&mesh).map_err(CleanError::Flawed)?;
-    let after = State::of(&mesh, &reference)?;
+    let after = State::of(&mesh, reference)?;
     let held = held.into_iter().filter(|&h| h).count();
     Ok(Optimized { mesh, report: Report { goal, mends, held, before, after } })
 }

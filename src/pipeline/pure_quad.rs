@@ -4,17 +4,17 @@
 //! are relaxed on the reference, and at the end all of them together within the budget of
 //! distance. What is far from any change stays as it is, to the bit.
 
-use super::{CleanError, budget, lift_held, prepare};
+use super::prepare::{Prepared, measure_clean};
+use super::{CleanError, budget, lift_held};
 use crate::config::Config;
-use crate::mesh::{MendPolicy, MendReport, MeshError, PolyMesh, Topology, check};
-use crate::metrics::{Metrics, Target, measure};
+use crate::mesh::{MendPolicy, MendReport, MeshError, PolyMesh};
+use crate::metrics::{Metrics, measure};
 use crate::moves::pure::{self, Conversion, Kind};
 use crate::smooth::{Budget, Orientation, RelaxOptions, Surroundings, orientation, smooth};
 use crate::sqrtcc::{QuadMesh, Vertex, lower};
 use crate::surface::{Reference, mean_edge};
 use crate::watch::{Phase, Watch};
 use serde::Serialize;
-use std::sync::Arc;
 
 /// Rings of faces around a change that are relaxed with it.
 const RINGS: u32 = 3;
@@ -58,29 +58,27 @@ pub fn pure_quad(
 ) -> Result<Converted, CleanError> {
     let raw = mesh.clone();
     watch.progress(Phase::Measure, 0, 2, None);
-    let (mesh, mends, surface) = prepare(mesh, reference, policy)?;
-    let surface = Arc::new(surface);
-    let target = Target::on(Arc::clone(&surface), reference.unwrap_or(&mesh), &config.measure);
+    let prepared = Prepared::new(mesh, reference, policy)?;
+    let target = prepared.target(reference, config);
     let before = measure(&raw, Some(&target))?;
-    let (q, feature_edges, conversion) = edit(&mesh, &surface, config, watch)?;
+    let (q, feature_edges, conversion) = edit(&prepared, config, watch)?;
+    let Prepared { mesh, mends, .. } = prepared;
     let result = lower(&q, mesh.group_names())?.mesh;
-    check(&result).map_err(CleanError::Flawed)?;
     watch.progress(Phase::Measure, 1, 2, None);
-    let after = measure(&result, Some(&target))?;
+    let after = measure_clean(&result, &target)?;
     let report = Report { mends, feature_edges, before, after, conversion };
     Ok(Converted { mesh: result, report })
 }
 
 /// Lifts, converts and smooths; also the number of feature edges.
 fn edit(
-    mesh: &PolyMesh,
-    reference: &Reference,
+    Prepared { mesh, topology, surface, .. }: &Prepared,
     config: &Config,
     watch: &dyn Watch,
 ) -> Result<(QuadMesh, usize, Conversion), CleanError> {
-    let topology = Topology::new(mesh);
-    let allowed = budget(mesh, reference, (&config.gate, mean_edge(mesh, &topology)))?;
-    let (mut q, feature_edges) = lift_held(mesh, &topology, reference, &config.features)?;
+    let reference = &**surface;
+    let allowed = budget(mesh, reference, (&config.gate, mean_edge(mesh, topology)))?;
+    let (mut q, feature_edges) = lift_held(mesh, topology, reference, &config.features)?;
     let surface = (reference, orientation(mesh, reference));
     let Settled { conversion, touched } =
         convert_settled(&mut q, Kind::Faces, surface, &config.relax, watch);

@@ -58,15 +58,25 @@ pub struct Reference {
 impl Reference {
     /// Triangulates `mesh`, drops triangles without area and finds its creases. O(n log n).
     pub fn new(mesh: &PolyMesh) -> Result<Self, SurfaceError> {
-        let (surface, creases) =
-            rayon::join(|| Self::plain(mesh), || creases(mesh, &Topology::new(mesh)));
-        let (mut surface, mut creases) = (surface?, creases);
+        let creases = || creases(mesh, &Topology::new(mesh));
+        let (surface, creases) = rayon::join(|| Self::plain(mesh), creases);
+        Ok(surface?.creased(creases))
+    }
+
+    /// [`Self::new`], where the connectivity of the mesh is known.
+    pub(crate) fn connected(mesh: &PolyMesh, topology: &Topology) -> Result<Self, SurfaceError> {
+        Ok(Self::plain(mesh)?.creased(creases(mesh, topology)))
+    }
+
+    /// The surface with normals and these creases between vertices of the mesh.
+    fn creased(self, mut creases: Vec<Crease>) -> Self {
+        let mut surface = self;
         for Crease { a, b, .. } in &mut creases {
             [*a, *b] = [*a, *b].map(|v| surface.tree.places()[v as usize]);
         }
         let numbers = (0..surface.source.len() as u32).into_par_iter();
         surface.normals = numbers.map(|t| surface.normal(t)).collect();
-        Ok(Self { creases, ..surface })
+        Self { creases, ..surface }
     }
 
     /// Like [`Reference::new`] without creases and kept normals: for distances to a mesh in work.
