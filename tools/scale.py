@@ -6,12 +6,14 @@
 
 The meshes are those of `examples/messy.rs` (connected) and, with DATA, koala_im50k of that folder
 1, 2, 6 and 20 times side by side. Run it on a machine that does nothing else: each mesh is cleaned
-once with two threads, and one of them once more with one thread, for what the second one gains.
+once with two threads, and one of them several times with one thread and with two, for what the second
+one gains.
 """
 import argparse
 import json
 import math
 import os
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -23,6 +25,7 @@ SIZES = [10_000, 30_000, 100_000, 300_000, 1_000_000]
 COPIES = [1, 2, 6, 20]
 # Of these the phases are timed with one thread and with two.
 PHASES = ["planning", "smoothing"]
+PAIRS = 3
 
 
 def generated(folder, program, faces):
@@ -145,10 +148,13 @@ def main():
 
 
 def speed_up(program, settings, mesh):
-    one, two = (clean(program, settings, *mesh, threads) for threads in (1, 2))
-    print(f"\nA second thread on {one['faces']:,} faces: ", end="")
-    gains = [f"{name} {one['phases'][name] / two['phases'][name]:.2f}" for name in PHASES]
-    print(", ".join(gains + [f"all {one['wall'] / two['wall']:.2f}"]), "times as fast.")
+    """What a second thread gains, by the medians of several pairs of runs, one after the other."""
+    runs = [[clean(program, settings, *mesh, threads) for threads in (1, 2)] for _ in range(PAIRS)]
+    one, two = zip(*runs)
+    gain = lambda seconds: statistics.median(map(seconds, one)) / statistics.median(map(seconds, two))
+    gains = [f"{name} {gain(lambda run: run['phases'][name]):.2f}" for name in PHASES]
+    gains.append(f"all {gain(lambda run: run['wall']):.2f}")
+    print(f"\nA second thread on {one[0]['faces']:,} faces:", ", ".join(gains), "times as fast.")
 
 
 if __name__ == "__main__":
