@@ -132,7 +132,7 @@ fn check_connectivity(mesh: &PolyMesh, topology: &Topology) -> Result<(), Flaw> 
 }
 
 /// A vertex that comes twice in the face; `seen` remembers the last face of each vertex.
-pub(super) fn repeated(corners: &[u32], face: u32, seen: &mut [u32]) -> Option<u32> {
+pub(crate) fn repeated(corners: &[u32], face: u32, seen: &mut [u32]) -> Option<u32> {
     corners.iter().copied().find(|&v| std::mem::replace(&mut seen[v as usize], face) == face)
 }
 

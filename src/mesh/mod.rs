@@ -12,7 +12,7 @@ mod topology;
 
 pub(crate) use buckets::Buckets;
 pub use check::{Flaw, check};
-pub(crate) use check::{check_connected, duplicates};
+pub(crate) use check::{check_connected, duplicates, repeated};
 pub(crate) use mend::mend_connected;
 pub use mend::{Mend, MendError, MendKind, MendPolicy, MendReport, mend};
 pub use polygon::{MeshError, Point, PolyMesh, Vector};

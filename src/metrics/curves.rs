@@ -193,7 +193,7 @@ fn sharp_segments(shape: &Shape, angle_deg: f64) -> Vec<[Point; 2]> {
 }
 
 /// Edges of the mesh, among them the closest to each of the points: a tree of all of them takes
-/// longer than all that is asked of it. Every so manieth edge tells how far away the others may be.
+/// longer than all that is asked of it. A few, taken evenly, tell how far away the closest are at most.
 fn segments_near(shape: &Shape, points: &[Point]) -> Segments {
     const EVERY: usize = 16;
     let edges = &shape.topology.edges;

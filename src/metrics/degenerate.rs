@@ -2,9 +2,8 @@
 //! to themselves or twice to a neighbour, vertices of valence 1 and 2.
 
 use super::components::partner_pairs;
-use crate::mesh::{Buckets, PolyMesh, Topology, duplicates};
+use crate::mesh::{Buckets, NONE, PolyMesh, Topology, duplicates, repeated};
 use serde::Serialize;
-use smallvec::SmallVec;
 
 /// Counts of degenerate elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -28,14 +27,11 @@ pub struct Degenerate {
 impl Degenerate {
     /// Counts. O(n log n) for n corners.
     pub(super) fn new(mesh: &PolyMesh, topology: &Topology) -> Self {
-        let repeats = |face: &&[u32]| {
-            let mut corners: SmallVec<[u32; 8]> = SmallVec::from_slice(face);
-            corners.sort_unstable();
-            corners.windows(2).any(|w| w[0] == w[1])
-        };
-        let (glued, twice) = shared_edges(topology);
+        let mut seen = vec![NONE; mesh.vertex_count()];
+        let repeats = |&(f, face): &(u32, &[u32])| repeated(face, f, &mut seen).is_some();
+        let (glued, twice) = shared_edges(mesh.face_count(), topology);
         Self {
-            faces_repeated_vertex: mesh.faces().filter(repeats).count(),
+            faces_repeated_vertex: (0..).zip(mesh.faces()).filter(repeats).count(),
             duplicate_faces: duplicates(mesh).len(),
             faces_degree_lt3: mesh.faces().filter(|face| face.len() < 3).count(),
             faces_glued_to_self: glued,
@@ -59,15 +55,14 @@ impl Degenerate {
 }
 
 /// Edges between a face and itself, and pairs of faces with several common edges.
-fn shared_edges(topology: &Topology) -> (usize, usize) {
+fn shared_edges(face_count: usize, topology: &Topology) -> (usize, usize) {
     let faces = |(h, t): (usize, usize)| {
         let (f, g) = (topology.face[h], topology.face[t]);
         (f.min(g), f.max(g))
     };
     let pairs: Vec<(u32, u32)> = partner_pairs(topology).map(faces).collect();
     let glued = pairs.iter().filter(|(f, g)| f == g).count();
-    let count = topology.face.last().map_or(0, |&f| f as usize + 1);
-    let sorted = Buckets::new(pairs.len(), count, |i| pairs[i as usize]);
+    let sorted = Buckets::new(pairs.len(), face_count, |i| pairs[i as usize]);
     let several = |(f, others): (u32, &[u32])| {
         others.chunk_by(|g, h| g == h).filter(|same| same[0] != f && same.len() > 1).count()
     };

@@ -80,9 +80,11 @@ impl Collapse {
 /// Whether a and c have a neighbour other than b and d, or a diagonal neighbour, in common.
 pub(super) fn meets_twice(mesh: &QuadMesh, [a, b, c, d]: [Vertex; 4]) -> bool {
     let beside: SmallVec<[Vertex; 8]> = mesh.neighbours(c).collect();
+    if mesh.neighbours(a).any(|v| v != b && v != d && beside.contains(&v)) {
+        return true;
+    }
     let across: SmallVec<[Vertex; 8]> = mesh.diagonals(c).collect();
-    mesh.neighbours(a).any(|v| v != b && v != d && beside.contains(&v))
-        || mesh.diagonals(a).any(|v| v != c && across.contains(&v))
+    mesh.diagonals(a).any(|v| v != c && across.contains(&v))
 }
 
 /// Merges the corner across the quad of `h` with its origin, which stays where it is if it is

@@ -3,7 +3,7 @@
 use super::prepare::Prepared;
 use super::{CleanError, budget};
 use crate::config::Config;
-use crate::mesh::{MendPolicy, MendReport, PolyMesh, Topology, check};
+use crate::mesh::{MendPolicy, MendReport, PolyMesh, Topology, check_connected};
 use crate::optimize::{self, Fairness, Goal, Options};
 use crate::smooth::{Budget, held_vertices};
 use crate::surface::{
@@ -64,14 +64,14 @@ pub fn optimize(
     watch.progress(Phase::Reference, 0, 1, None);
     let Prepared { mut mesh, topology, mends, surface } = Prepared::new(mesh, reference, policy)?;
     let reference = &*surface;
-    let allowed = allowed(&mesh, reference, config)?;
+    let allowed = allowed((&mesh, &topology), reference, config)?;
     let held = held(&mesh, &topology, reference, config);
     let before = State::of(&mesh, reference)?;
     let options =
         Options { optimize: &config.optimize, smooth: &config.smooth, relax: &config.relax };
     let points = optimize::optimize(&mesh, &held, reference, (goal, options), allowed, watch);
     mesh.set_points(points);
-    check(&mesh).map_err(CleanError::Flawed)?;
+    check_connected(&mesh, &topology).map_err(CleanError::Flawed)?;
     let after = State::of(&mesh, reference)?;
     let held = held.into_iter().filter(|&h| h).count();
     Ok(Optimized { mesh, report: Report { goal, mends, held, before, after } })
@@ -79,11 +79,11 @@ pub fn optimize(
 
 /// How far from the reference vertices may go.
 pub(crate) fn allowed(
-    mesh: &PolyMesh,
+    (mesh, topology): (&PolyMesh, &Topology),
     reference: &Reference,
     config: &Config,
 ) -> Result<Budget, CleanError> {
-    let edge = mean_edge(mesh, &Topology::new(mesh));
+    let edge = mean_edge(mesh, topology);
     let start = budget(mesh, reference, (&config.gate, edge))?;
     Ok(Budget {
         hausdorff: start.hausdorff.max(config.optimize.hausdorff_edges * edge),

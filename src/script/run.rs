@@ -5,7 +5,7 @@ use super::error::{ScriptError, StepError, Trouble};
 use super::session::{Explained, Means, Session};
 use super::{Script, Step};
 use crate::config::Config;
-use crate::mesh::{MendPolicy, PolyMesh, Topology, check, mend};
+use crate::mesh::{MendPolicy, PolyMesh, check, mend_connected};
 use crate::ops::Op;
 use crate::patch::Refill;
 use crate::pipeline::{CleanError, lift_held};
@@ -72,10 +72,11 @@ pub fn edit(
     (config, keep_going): (&Config, bool),
     watch: &dyn Watch,
 ) -> Result<Edited, ScriptError> {
-    let (mesh, mends) = mend(mesh, policy)?;
+    let (mesh, topology, mends) = mend_connected(mesh, policy)?;
     watch.progress(Phase::Reference, 0, 1, None);
-    let surface = Reference::new(reference.unwrap_or(&mesh))?;
-    let (q, _) = lift_held(&mesh, &Topology::new(&mesh), &surface, &config.features)?;
+    let own = || Reference::connected(&mesh, &topology);
+    let surface = reference.map_or_else(own, Reference::new)?;
+    let (q, _) = lift_held(&mesh, &topology, &surface, &config.features)?;
     let means =
         Means { reference: &surface, config, keep_going, numbers_hold: mends.mends.is_empty() };
     let mut session = Session::new(q, &mesh, means);

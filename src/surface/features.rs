@@ -64,7 +64,7 @@ pub(super) fn creases(mesh: &PolyMesh, topology: &Topology) -> Vec<Crease> {
     edges.map(crease).filter(|c| c.angle_deg >= LEAST_CREASE_DEG).collect()
 }
 
-/// The normal of each face, twice as long as its area. Parallel.
+/// [`PolyMesh::area_vector`] of each face. Parallel.
 pub(crate) fn area_vectors(mesh: &PolyMesh) -> Vec<Vector> {
     (0..mesh.face_count()).into_par_iter().map(|f| mesh.area_vector(f)).collect()
 }

@@ -1,6 +1,7 @@
 //! Planar or equiangular faces, on the connectivity as it is.
 
 use super::Operation;
+use crate::mesh::Topology;
 use crate::optimize::{Fairness, Goal, Options, optimize};
 use crate::pipeline::optimize::allowed;
 use crate::script::error::Trouble;
@@ -23,7 +24,8 @@ impl Operation for Optimize {
         let mut lowered =
             lower(session.mesh(), session.group_names).map_err(|error| other(error.to_string()))?;
         let config = session.config;
-        let allowed = allowed(&lowered.mesh, session.reference, config)
+        let topology = Topology::new(&lowered.mesh);
+        let allowed = allowed((&lowered.mesh, &topology), session.reference, config)
             .map_err(|error| other(error.to_string()))?;
         let options =
             Options { optimize: &config.optimize, smooth: &config.smooth, relax: &config.relax };
