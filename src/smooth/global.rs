@@ -72,7 +72,8 @@ pub fn smooth(
     let mut work = Work::new(mesh, held, reference, (options, relax), budget);
     let (points, found) = if work.iterate(watch) {
         work.land();
-        work.mend()
+        let (points, found) = work.mend(mesh.points().to_vec(), work.start.clone());
+        if found.is_folded() { work.unfold(points, found) } else { (points, found) }
     } else {
         (mesh.points().to_vec(), work.start.clone())
     };
@@ -126,7 +127,6 @@ fn filled(mesh: &PolyMesh, held: &[bool], side: Orientation) -> Region {
 struct Work<'a> {
     options: &'a SmoothOptions,
     mesh: PolyMesh,
-    original: &'a PolyMesh,
     guard: Guard<'a>,
     trace: Trace,
     limits: Limits,
@@ -161,7 +161,6 @@ impl<'a> Work<'a> {
         Self {
             options,
             mesh: mesh.clone(),
-            original: mesh,
             guard,
             trace,
             limits,
@@ -212,11 +211,30 @@ impl<'a> Work<'a> {
         untangle(&mut self.mesh, &self.region.kernel, surface, self.options.least_jacobian);
     }
 
-    /// Checks the limits and undoes moves where they are broken until they are kept.
-    fn mend(&mut self) -> (Vec<Point>, Finding) {
+    /// Unfolds what is folded where moves were undone: on the way back from other places there may
+    /// be room. `points` are those of a mesh that keeps the limits, `found` what it is like.
+    fn unfold(&mut self, points: Vec<Point>, found: Finding) -> (Vec<Point>, Finding) {
+        self.mesh.set_points(points.clone());
+        let surface = (self.guard.reference, self.setting.sign);
+        if !untangle(&mut self.mesh, &self.region.kernel, surface, self.options.least_jacobian) {
+            return (points, found);
+        }
+        let mended = self.mended;
+        let (unfolded, after) = self.mend(points.clone(), found.clone());
+        self.mended = mended;
+        if after.least_jacobian > found.least_jacobian {
+            (unfolded, after)
+        } else {
+            (points, found)
+        }
+    }
+
+    /// Checks the limits and undoes moves `from` places that keep them, of which all is `known`, until
+    /// they are kept.
+    fn mend(&mut self, from: Vec<Point>, known: Finding) -> (Vec<Point>, Finding) {
         let kernel = &self.region.kernel;
-        let smoothed = self.mesh.points().to_vec();
-        let mut mending = Mending::new(self.original.points().to_vec(), smoothed);
+        let moved = self.mesh.points().to_vec();
+        let mut mending = Mending::new(from, moved);
         let mut found = self.guard.check(&self.mesh, &mut self.trace);
         let mut broken = found.broken(&self.start, &self.limits);
         for _ in 0..self.options.mend_rounds {
@@ -233,8 +251,9 @@ impl<'a> Work<'a> {
             self.mended = mending.count();
             return (self.mesh.points().to_vec(), found);
         }
-        self.mended = self.original.vertex_count();
-        (self.original.points().to_vec(), self.start.clone())
+        let from = mending.undone();
+        self.mended = from.len();
+        (from, known)
     }
 }
 
@@ -319,6 +338,24 @@ mod tests {
         let (_, report) = smooth(&mesh, &held, &reference, (&options, &relax), None, &Silent);
         assert!(report.least_jacobian_before < 0.0, "{report:?}");
         assert!(report.least_jacobian_after >= options.least_jacobian, "{report:?}");
+    }
+
+    #[test]
+    fn what_undoing_has_folded_is_unfolded_from_there() {
+        let mut mesh = shapes::grid(6, 6);
+        let reference = Reference::new(&mesh).unwrap();
+        let mut points = mesh.points().to_vec();
+        points[24] = Point::new(4.4, 3.1, 0.0);
+        mesh.set_points(points.clone());
+        let held: Vec<bool> = (0..points.len()).map(|v| v != 24).collect();
+        let (options, relax) = (SmoothOptions::default(), RelaxOptions::default());
+        let mut work = Work::new(&mesh, &held, &reference, (&options, &relax), None);
+        let folded = work.start.clone();
+        assert!(folded.is_folded());
+        let (unfolded, after) = work.unfold(points.clone(), folded);
+        assert!(after.least_jacobian >= options.least_jacobian, "{after:?}");
+        let moved = |v: &usize| unfolded[*v] != points[*v];
+        assert_eq!((0..points.len()).filter(moved).collect::<Vec<_>>(), [24]);
     }
 
     #[test]

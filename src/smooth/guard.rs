@@ -185,6 +185,11 @@ impl Finding {
         part
     }
 
+    /// Whether a face is folded, or otherwise [broken](super::soundness::broken_below).
+    pub(super) fn is_folded(&self) -> bool {
+        self.soundness.iter().any(|&s| s < 0.0)
+    }
+
     /// Faces that break a limit, ascending; if the mean square does, those that have added most
     /// to it since `start`.
     pub(crate) fn broken(&self, start: &Self, limits: &Limits) -> Vec<u32> {
@@ -255,6 +260,11 @@ impl Mending {
         for (keep, take) in self.keep.iter_mut().zip(take) {
             *keep = if *keep - take < 0.05 { 0.0 } else { *keep - take };
         }
+    }
+
+    /// All as it was.
+    pub(super) fn undone(self) -> Vec<Point> {
+        self.start
     }
 
     /// How many vertices do not keep their whole move.
