@@ -78,17 +78,21 @@ impl Automation<'_> {
             angles: allowed.angles * corners(mesh) - angles(mesh),
         };
         self.smooth_between((mesh, &mut contact), watch)?;
+        let half = self.plan.stages.div_ceil(2);
         for i in (0..self.plan.stages).take_while(|_| !watch.cancelled()) {
             watch.stage(i, self.plan.stages);
             schedule.measure(mesh);
             let (lambda, faces) = (self.plan.lambda(i), self.patch_faces(i));
             schedule.restart(left(mesh, &contact));
+            if i == half {
+                schedule.forgive();
+            }
             let refills = (Stage::Refills, lambda);
             for step in [(Stage::Moves, lambda), refills] {
                 self.rounds((mesh, &mut contact), &mut schedule, (step, faces), watch);
             }
             // Early on most elements vanish anyway: moving them first is lost work.
-            if self.plan.relocations > 0 && 2 * i >= self.plan.stages {
+            if self.plan.relocations > 0 && i >= half {
                 // What has moved may be near enough to others now to cancel.
                 let relocations = (Stage::Relocations, -self.plan.relocation_saves);
                 for step in [relocations, refills] {

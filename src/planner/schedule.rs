@@ -141,6 +141,14 @@ impl Schedule {
         self.slack = slack;
     }
 
+    /// What failed for its shape or distance may be tried again too, as if nothing were known of it:
+    /// early on elements stand so close together that an edit may fail for the poor faces around it,
+    /// and a crowd that is left where all has failed once would stay for good.
+    pub fn forgive(&mut self) {
+        self.failed.retain(|_, failed| failed.needs.is_finite());
+        self.hopeless.retain(|_, needs| needs.is_finite());
+    }
+
     /// Gives back the memory of planning, which takes several times that of the mesh; after that
     /// anything may write to it.
     pub fn rest(&mut self) {
