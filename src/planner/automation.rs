@@ -70,7 +70,7 @@ impl Automation<'_> {
         let mut contact = attached(mesh)?;
         // Of the mean at a corner: a mesh of fewer faces may not have worse ones.
         let allowed = Slack {
-            distance: (self.gate.rms * self.budget.rms).powi(2) * contact.probe_count() as f64,
+            distance: contact.squares_at(self.gate.rms * self.budget.rms),
             angles: self.gate.angles * (angles(mesh) / corners(mesh)).max(FAIR),
         };
         let left = |mesh: &QuadMesh, contact: &Contact| Slack {

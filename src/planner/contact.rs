@@ -17,12 +17,18 @@ const PROBES_PER_FACE: usize = 3;
 /// Creases below this angle get no probes of their own.
 const CREASE_DEG: f64 = 25.0;
 
+/// Distances of a mesh that is its own reference come from rounding and are below this share of what
+/// is allowed.
+const ROUNDING: f64 = 1e-6;
+
 /// Where the mesh touches the reference.
 #[derive(Debug, Clone, Default)]
 pub struct Contact {
     /// A triangle of the reference near each vertex, by id; [`NONE`] if unknown.
     near: Vec<u32>,
     points: Vec<Point>,
+    /// How many of the probes are spread evenly; those on creases follow.
+    even: usize,
     /// Distance of each probe to the mesh when it was last looked up, in units of the file.
     distance: Vec<f64>,
     /// First probe of each face, by vertex id, and the probe after each probe.
@@ -45,6 +51,7 @@ impl Contact {
     #[must_use]
     pub fn new(reference: &Reference, faces: usize) -> Self {
         let mut points = reference.samples(PROBES_PER_FACE * faces);
+        let even = points.len();
         let sharp = reference.creases().iter().filter(|c| c.angle_deg >= CREASE_DEG);
         let mut ends: Vec<u32> = sharp.flat_map(|c| [c.a, c.b]).collect();
         ends.sort_unstable();
@@ -53,7 +60,7 @@ impl Contact {
         let every = ends.len().div_ceil(2 * faces.max(1)).max(1);
         points.extend(ends.iter().step_by(every).map(|&v| reference.points()[v as usize]));
         let n = points.len();
-        Self { points, distance: vec![0.0; n], next: vec![NONE; n], ..Self::default() }
+        Self { points, even, distance: vec![0.0; n], next: vec![NONE; n], ..Self::default() }
     }
 
     /// Looks everything up anew. O(n log n), parallel.
@@ -119,16 +126,21 @@ impl Contact {
         }
     }
 
-    /// Number of probes.
+    /// What [`Self::squared_distances`] would be if the root mean square distance of the evenly spread
+    /// probes were `rms`: those on creases are farther from a mesh than others, by as much as they
+    /// are now. At least that of as many probes at that distance. O(probes).
     #[must_use]
-    pub fn probe_count(&self) -> usize {
-        self.points.len()
+    pub fn squares_at(&self, rms: f64) -> f64 {
+        let even = squares(&self.distance[..self.even]) / self.even.max(1) as f64;
+        let count = self.points.len() as f64;
+        let is_known = even.sqrt() > ROUNDING * rms;
+        rms * rms * if is_known { count.max(self.squared_distances() / even) } else { count }
     }
 
     /// Σ squared distance of the probes to the mesh, in squared units of the file. O(probes).
     #[must_use]
     pub fn squared_distances(&self) -> f64 {
-        self.distance.iter().map(|d| d * d).sum()
+        squares(&self.distance)
     }
 
     /// A triangle of the reference near `v`, if one is known.
@@ -222,6 +234,10 @@ impl Contact {
     }
 }
 
+fn squares(distances: &[f64]) -> f64 {
+    distances.iter().map(|d| d * d).sum()
+}
+
 /// The faces among vertices that have changed or moved, dead ones too, and those at the others.
 fn faces_at(mesh: &QuadMesh, changed: &[Vertex]) -> Vec<Vertex> {
     let is_alive = |&&v: &&Vertex| mesh.is_alive(v) && !mesh.is_ghost(v);
@@ -238,6 +254,7 @@ mod tests {
     use super::*;
     use crate::mesh::{Vector, shapes};
     use crate::sqrtcc::lift;
+    use crate::surface::trial;
     use fixedbitset::FixedBitSet;
 
     /// Moves vertices one after the other; where the probes are then. They are handed out after each
@@ -258,6 +275,28 @@ mod tests {
         }
         contact.settle(&mesh);
         (0..mesh.vertex_ids()).map(|f| contact.probes(f).collect()).collect()
+    }
+
+    #[test]
+    fn what_is_allowed_counts_probes_on_creases_for_as_much_as_they_are_farther() {
+        let reference = Reference::new(&trial::cube(12, 0.0, 0.0)).unwrap();
+        let attached = |mesh: &crate::mesh::PolyMesh| {
+            let mut contact = Contact::new(&reference, mesh.face_count());
+            contact.attach(&lift(mesh, &FixedBitSet::new()).unwrap(), &reference).unwrap();
+            contact
+        };
+        let even_rms = |c: &Contact| (squares(&c.distance[..c.even]) / c.even as f64).sqrt();
+        let mut round = trial::cube(12, 0.0, 0.0);
+        let towards_ball = |p: &Point| Point::from(p.coords.lerp(&p.coords.normalize(), 0.2));
+        round.set_points(round.points().iter().map(towards_ball).collect());
+        let contact = attached(&round);
+        let (all, rms) = (contact.squared_distances(), even_rms(&contact));
+        assert!(contact.even < contact.points.len(), "some are on creases");
+        assert!(all > 1.1 * rms * rms * contact.points.len() as f64, "and farther");
+        assert!((contact.squares_at(2.0 * rms) / (4.0 * all) - 1.0).abs() < 1e-12);
+        // Where there is no distance to compare, all count alike.
+        let own = attached(&trial::cube(12, 0.0, 0.0));
+        assert!((own.squares_at(0.5) - 0.25 * own.points.len() as f64).abs() < 1e-9);
     }
 
     #[test]

@@ -37,8 +37,8 @@ knobs! {
         /// known from samples only: the part below 1 is for what falls between them.
         hausdorff: f64 = 0.92, in 0.1..=100.0, "input Hausdorff distances";
         /// Root mean square distance of the reference to the mesh that all edits together may
-        /// cause, as a multiple of the input's.
-        rms: f64 = 1.2, in 0.0..=100.0, "input RMS distances";
+        /// cause, as a multiple of the input's, the larger of both ways.
+        rms: f64 = 1.1, in 0.0..=100.0, "input RMS distances";
         /// Hausdorff distance allowed where the mesh is its own reference, and so at none from it.
         own_hausdorff_edges: f64 = 0.2, in 0.0..=10.0, "mean edges";
         /// Root mean square distance allowed where the mesh is its own reference.
