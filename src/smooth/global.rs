@@ -70,12 +70,13 @@ pub fn smooth(
 ) -> (Vec<Point>, SmoothReport) {
     assert_eq!(held.len(), mesh.vertex_count(), "one entry for each vertex");
     let mut work = Work::new(mesh, held, reference, (options, relax), budget);
-    let (points, found) = if work.iterate(watch) {
+    let start = |work: &Work| (mesh.points().to_vec(), work.start.clone());
+    let ((points, found), mended) = if work.iterate(watch) {
         work.land();
-        let (points, found) = work.mend(mesh.points().to_vec(), work.start.clone());
-        if found.is_folded() { work.unfold(points, found) } else { (points, found) }
+        let (result, mended) = work.mend(start(&work));
+        (if result.1.is_folded() { work.unfold(result) } else { result }, mended)
     } else {
-        (mesh.points().to_vec(), work.start.clone())
+        (start(&work), 0)
     };
     let kernel = &work.region.kernel;
     let report = SmoothReport {
@@ -86,7 +87,7 @@ pub fn smooth(
         after: found.deviation,
         least_jacobian_before: work.start.least_jacobian,
         least_jacobian_after: found.least_jacobian,
-        mended: work.mended,
+        mended,
     };
     (points, report)
 }
@@ -123,6 +124,9 @@ fn filled(mesh: &PolyMesh, held: &[bool], side: Orientation) -> Region {
     region
 }
 
+/// Places of the vertices, and what the mesh is like there.
+type Checked = (Vec<Point>, Finding);
+
 /// A mesh while it is smoothed.
 struct Work<'a> {
     options: &'a SmoothOptions,
@@ -133,7 +137,6 @@ struct Work<'a> {
     start: Finding,
     region: Region,
     setting: Setting,
-    mended: usize,
 }
 
 impl<'a> Work<'a> {
@@ -158,17 +161,7 @@ impl<'a> Work<'a> {
         let mut region = filled(mesh, held, side);
         region.kernel.prepare();
         region.kernel.find_normals(reference, &setting);
-        Self {
-            options,
-            mesh: mesh.clone(),
-            guard,
-            trace,
-            limits,
-            start,
-            region,
-            setting,
-            mended: 0,
-        }
+        Self { options, mesh: mesh.clone(), guard, trace, limits, start, region, setting }
     }
 
     /// Iterates until vertices are still, looking for lost places in between; whether there is
@@ -207,31 +200,29 @@ impl<'a> Work<'a> {
         self.region.kernel.land(self.guard.reference, &self.setting);
         self.region.kernel.fit(self.guard.reference, &self.setting, self.options.fit);
         self.mesh.set_points(self.region.kernel.vertices.iter().map(|v| v.point).collect());
+        self.untangle();
+    }
+
+    /// Unfolds quads where that can be done in place; whether anything has moved.
+    fn untangle(&mut self) -> bool {
         let surface = (self.guard.reference, self.setting.sign);
-        untangle(&mut self.mesh, &self.region.kernel, surface, self.options.least_jacobian);
+        untangle(&mut self.mesh, &self.region.kernel, surface, self.options.least_jacobian)
     }
 
     /// Unfolds what is folded where moves were undone: on the way back from other places there may
-    /// be room. `points` are those of a mesh that keeps the limits, `found` what it is like.
-    fn unfold(&mut self, points: Vec<Point>, found: Finding) -> (Vec<Point>, Finding) {
-        self.mesh.set_points(points.clone());
-        let surface = (self.guard.reference, self.setting.sign);
-        if !untangle(&mut self.mesh, &self.region.kernel, surface, self.options.least_jacobian) {
-            return (points, found);
+    /// be room. `known` keeps the limits.
+    fn unfold(&mut self, known: Checked) -> Checked {
+        self.mesh.set_points(known.0.clone());
+        if !self.untangle() {
+            return known;
         }
-        let mended = self.mended;
-        let (unfolded, after) = self.mend(points.clone(), found.clone());
-        self.mended = mended;
-        if after.least_jacobian > found.least_jacobian {
-            (unfolded, after)
-        } else {
-            (points, found)
-        }
+        let (unfolded, _) = self.mend(known.clone());
+        if unfolded.1.least_jacobian > known.1.least_jacobian { unfolded } else { known }
     }
 
-    /// Checks the limits and undoes moves `from` places that keep them, of which all is `known`, until
-    /// they are kept.
-    fn mend(&mut self, from: Vec<Point>, known: Finding) -> (Vec<Point>, Finding) {
+    /// Checks the limits and undoes moves, towards `known` places that keep them, until they are
+    /// kept; and how many vertices were taken back, in part or altogether.
+    fn mend(&mut self, (from, known): Checked) -> (Checked, usize) {
         let kernel = &self.region.kernel;
         let moved = self.mesh.points().to_vec();
         let mut mending = Mending::new(from, moved);
@@ -248,12 +239,11 @@ impl<'a> Work<'a> {
             broken = found.broken(&self.start, &self.limits);
         }
         if broken.is_empty() {
-            self.mended = mending.count();
-            return (self.mesh.points().to_vec(), found);
+            return ((self.mesh.points().to_vec(), found), mending.count());
         }
         let from = mending.undone();
-        self.mended = from.len();
-        (from, known)
+        let count = from.len();
+        ((from, known), count)
     }
 }
 
@@ -352,7 +342,7 @@ mod tests {
         let mut work = Work::new(&mesh, &held, &reference, (&options, &relax), None);
         let folded = work.start.clone();
         assert!(folded.is_folded());
-        let (unfolded, after) = work.unfold(points.clone(), folded);
+        let (unfolded, after) = work.unfold((points.clone(), folded));
         assert!(after.least_jacobian >= options.least_jacobian, "{after:?}");
         let moved = |v: &usize| unfolded[*v] != points[*v];
         assert_eq!((0..points.len()).filter(moved).collect::<Vec<_>>(), [24]);
