@@ -200,6 +200,7 @@ fn edit(
         reference,
         lines: &lines,
         creases: &creases,
+        crease_deg: config.features.crease_deg,
         orientation,
         budget,
         faces,

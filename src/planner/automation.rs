@@ -3,15 +3,16 @@
 use super::PlanOptions;
 use super::contact::Contact;
 use super::cost::CostOptions;
+use super::creases::Creases;
 use super::gate::{GateOptions, Setting, shape_of};
 use super::global::{self, Group, Link};
 use super::lines::{self, Rails};
 use super::schedule::{Schedule, Slack, is_poor};
 use super::worker::{Size, Stage, Task, t_junctions};
-use crate::mesh::MeshError;
+use crate::mesh::{MeshError, Point};
 use crate::moves;
 use crate::smooth::{self, Budget, Orientation, RelaxOptions, SmoothOptions};
-use crate::sqrtcc::{QuadMesh, Vertex, lower};
+use crate::sqrtcc::{Lowered, QuadMesh, Vertex, lower};
 use crate::surface::{Reference, SharpLines};
 use crate::watch::Watch;
 use rayon::prelude::*;
@@ -26,6 +27,8 @@ pub struct Automation<'a> {
     pub lines: &'a SharpLines,
     /// What of its creases is sharp for at least an edge of the mesh.
     pub creases: &'a SharpLines,
+    /// Angle from which edges of the reference are creases, in degrees.
+    pub crease_deg: f64,
     /// How the mesh is oriented against it.
     pub orientation: Orientation,
     /// How far the mesh may be from it, in units of the file.
@@ -46,7 +49,7 @@ pub struct Automation<'a> {
     pub smooth: &'a SmoothOptions,
 }
 
-/// Degrees of deviation at a corner that edits may cause even where the input has less.
+/// Degrees of deviation at a corner that are allowed even where the input has less.
 const FAIR: f64 = 2.0;
 /// Share of the Hausdorff distance to keep within which vertices of features slide freely.
 const SLIDES_WITHIN: f64 = 0.3;
@@ -68,10 +71,11 @@ impl Automation<'_> {
             contact.attach(mesh, self.reference).map(|()| contact)
         };
         let mut contact = attached(mesh)?;
+        let deviation = (angles(mesh) / corners(mesh)).max(FAIR);
         // Of the mean at a corner: a mesh of fewer faces may not have worse ones.
         let allowed = Slack {
             distance: contact.squares_at(self.gate.rms * self.budget.rms),
-            angles: self.gate.angles * (angles(mesh) / corners(mesh)).max(FAIR),
+            angles: self.gate.angles * deviation,
         };
         let left = |mesh: &QuadMesh, contact: &Contact| Slack {
             distance: allowed.distance - contact.squared_distances(),
@@ -139,6 +143,9 @@ impl Automation<'_> {
             self.smooth(mesh, self.smooth, watch)?;
             unpin(mesh, &settled);
         }
+        if self.plan.crease_worth > 0.0 && !watch.cancelled() {
+            self.draw_near(mesh, self.plan.crease_worth * deviation)?;
+        }
         Ok(schedule)
     }
 
@@ -188,6 +195,21 @@ impl Automation<'_> {
     fn settle(&self, mesh: &mut QuadMesh) -> Vec<Vertex> {
         let rails = Rails { lines: self.creases, ..self.rails() };
         rails.settle(mesh, self.plan.settles_edges * self.mean_edge)
+    }
+
+    /// Draws edges to creases, within the limits, where an edge length is worth so many degrees.
+    fn draw_near(&self, mesh: &mut QuadMesh, worth_deg: f64) -> Result<(), MeshError> {
+        let before = lower(mesh, &[String::new()])?;
+        let creases = Creases::new(self.reference, self.crease_deg, self.mean_edge);
+        if creases.draw_near(mesh, self.rails(), worth_deg) {
+            let moved = before.vertex_ids.iter().map(|&v| mesh.position(v)).collect();
+            let options = (self.smooth, self.relax);
+            let budget = Some(self.smooth_budget());
+            let points =
+                smooth::mend(&before.mesh, &before.held, moved, self.reference, options, budget);
+            place(mesh, &before, points);
+        }
+        Ok(())
     }
 
     fn rails(&self) -> Rails<'_> {
@@ -264,6 +286,11 @@ impl Automation<'_> {
         self.gate.hausdorff * self.budget.hausdorff
     }
 
+    /// How far smoothing may take the mesh from the reference.
+    fn smooth_budget(&self) -> Budget {
+        Budget { hausdorff: self.hausdorff(), rms: self.smooth.budget * self.budget.rms }
+    }
+
     /// Smooths before more edits, after which contact is looked up anew; a run that is to stop leaves
     /// that to the smoothing at its end.
     fn smooth_between(
@@ -289,23 +316,27 @@ impl Automation<'_> {
         watch: &dyn Watch,
     ) -> Result<(), MeshError> {
         let polygons = lower(mesh, &[String::new()])?;
-        let budget =
-            Budget { hausdorff: self.hausdorff(), rms: self.smooth.budget * self.budget.rms };
         let (points, _) = smooth::smooth(
             &polygons.mesh,
             &polygons.held,
             self.reference,
             (options, self.relax),
-            Some(budget),
+            Some(self.smooth_budget()),
             watch,
         );
-        for (&v, point) in polygons.vertex_ids.iter().zip(points) {
-            mesh.set_position(v, point);
-        }
+        place(mesh, &polygons, points);
         lines::relax(mesh, self.rails(), self.plan.slides);
         mesh.commit();
         Ok(())
     }
+}
+
+/// Puts the vertices of a lowered mesh there.
+fn place(mesh: &mut QuadMesh, polygons: &Lowered, points: Vec<Point>) {
+    for (&v, point) in polygons.vertex_ids.iter().zip(points) {
+        mesh.set_position(v, point);
+    }
+    mesh.commit();
 }
 
 /// The faces of the polygon mesh. Parallel.

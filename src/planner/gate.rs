@@ -557,7 +557,7 @@ impl Shape {
 
     /// Adds a face. One against whose area most of `up`, the sum of the unit normals of the
     /// reference at its corners, points is turned over; at a crease they do not agree enough to say.
-    fn add(&mut self, points: &[Point], up: &Vector) {
+    pub(super) fn add(&mut self, points: &[Point], up: &Vector) {
         let n = points.len();
         self.corners += n;
         let ideal = 180.0 - 360.0 / n as f64;

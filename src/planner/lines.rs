@@ -156,10 +156,15 @@ impl Rails<'_> {
         let off = |&f: &Vertex| {
             let corners: SmallVec<[Point; 8]> =
                 mesh.neighbours(f).map(|v| mesh.position(v)).collect();
-            let away = |at: Point| self.reference.closest(&at).distance;
-            gauges(&corners).map(away).fold(0.0, f64::max)
+            self.off(&corners)
         };
         faces.iter().map(off).fold(0.0, f64::max)
+    }
+
+    /// How far a face of these corners is from the surface at most.
+    pub(super) fn off(&self, corners: &[Point]) -> f64 {
+        let away = |at: Point| self.reference.closest(&at).distance;
+        gauges(corners).map(away).fold(0.0, f64::max)
     }
 }
 

@@ -11,6 +11,7 @@ pub mod clusters;
 pub mod contact;
 pub mod cost;
 mod cover;
+mod creases;
 pub mod crossings;
 pub mod edit;
 pub mod gate;
@@ -73,6 +74,9 @@ knobs! {
         /// How near to a crease vertices are put onto it at the end, after which all is smoothed
         /// once more; 0 leaves them where they are.
         settles_edges: f64 = 0.4, in 0.0..=2.0, "mean edges";
+        /// How much corners may deviate in all for an edge that is drawn to a crease at the end,
+        /// from as far away as it is long; 0 leaves all where they are.
+        crease_worth: f64 = 80.0, in 0.0..=100_000.0, "mean deviations of the input";
         /// Make every face a quad at the end, as far as parity allows.
         pure_quad: bool = false, in 0.0..=1.0, "";
     }

@@ -92,6 +92,29 @@ pub fn smooth(
     (points, report)
 }
 
+/// Takes back moves of vertices of `mesh` to `moved`, in part or altogether, where they break the
+/// limits that [`smooth`] has: the new points. O(n log n), parallel; independent of the number of
+/// threads.
+///
+/// # Panics
+/// If there is not one entry of `held`, and of `moved`, for each vertex: that is a bug of the caller.
+#[must_use]
+pub fn mend(
+    mesh: &PolyMesh,
+    held: &[bool],
+    moved: Vec<Point>,
+    reference: &Reference,
+    (options, relax): (&SmoothOptions, &RelaxOptions),
+    budget: Option<Budget>,
+) -> Vec<Point> {
+    assert_eq!((held.len(), moved.len()), (mesh.vertex_count(), mesh.vertex_count()));
+    let mut work = Work::new(mesh, held, reference, (options, relax), budget);
+    work.mesh.set_points(moved);
+    let start = (mesh.points().to_vec(), work.start.clone());
+    let ((points, _), _) = work.mend(start);
+    points
+}
+
 /// The limits: the budget, or, where the start is beyond it, hardly more than that; without one,
 /// what follows from the start.
 pub(crate) fn limits(
@@ -369,6 +392,24 @@ mod tests {
         let relax = RelaxOptions::default();
         let (points, _) = smooth(&mesh, &held, &reference, (&options, &relax), None, &Silent);
         assert!(worst(&points) > 0.0, "{}", worst(&points));
+    }
+
+    #[test]
+    fn moves_that_break_a_limit_are_taken_back_and_others_stay() {
+        let mesh = shapes::grid(12, 12);
+        let reference = Reference::new(&mesh).unwrap();
+        let held = vec![false; mesh.vertex_count()];
+        let mut moved = mesh.points().to_vec();
+        // One leaves the surface, one folds a quad, and one far from both just moves.
+        moved[28] += crate::mesh::Vector::z();
+        moved[36] = Point::new(11.4, 3.1, 0.0);
+        moved[140] += crate::mesh::Vector::x() * 0.1;
+        let options = (&SmoothOptions::default(), &RelaxOptions::default());
+        let budget = Budget { hausdorff: 0.05, rms: 1.0 };
+        let points = mend(&mesh, &held, moved.clone(), &reference, options, Some(budget));
+        let off = |v: usize| (points[v] - mesh.points()[v]).norm();
+        assert!(off(28) <= 0.05 && off(36) < 0.6, "{} {}", off(28), off(36));
+        assert_eq!(points[140], moved[140]);
     }
 
     #[test]

@@ -28,6 +28,13 @@ impl Segments {
         self.tree.as_ref()?.closest(query, radius).map(|hit| hit.point)
     }
 
+    /// The closest segment, by its place in the order of the tree, and its distance; `None` without
+    /// segments. O(log n) expected.
+    pub(crate) fn nearest(&self, query: &Point) -> Option<(u32, f64)> {
+        let hit = self.tree.as_ref()?.closest(query, f64::INFINITY)?;
+        Some((hit.triangle, hit.distance))
+    }
+
     /// Whether a segment is at most `radius` away. O(log n) expected.
     pub(crate) fn is_within(&self, query: &Point, radius: f64) -> bool {
         self.tree.as_ref().is_some_and(|tree| tree.is_within(query, radius))
@@ -36,8 +43,8 @@ impl Segments {
     /// Distances of many points to the nearest segment, in their order; infinite without segments.
     /// Parallel.
     pub(crate) fn distances(&self, points: &[Point]) -> Vec<f64> {
-        let nearest = |p| Some(self.tree.as_ref()?.closest(p, f64::INFINITY)?.distance);
-        points.par_iter().with_min_len(64).map(|p| nearest(p).unwrap_or(f64::INFINITY)).collect()
+        let distance = |p| self.nearest(p).map_or(f64::INFINITY, |(_, distance)| distance);
+        points.par_iter().with_min_len(64).map(distance).collect()
     }
 }
 
