@@ -49,16 +49,6 @@ const MOST_E: [(&str, f64); 17] = [
     ("wingnut_im4k", 0.14),
 ];
 
-/// What is not as it should be yet: mesh, quantity, and how far off it may be until it is mended.
-const NOT_YET: [(&str, &str, f64); 2] =
-    [("rockerarm_im20k", FARTHEST_CREASE, 0.005), ("penguin_mlpair", CREASES, 0.0008)];
-
-const CREASES: &str = "mean distance of creases";
-const FARTHEST_CREASE: &str = "largest distance of creases";
-
-const T_JUNCTIONS: &str = "T-junctions";
-const INVERTED: &str = "inverted quads";
-
 /// Share of the T-junctions that may be left; none where there were none.
 const MOST_T_JUNCTIONS: f64 = 0.01;
 /// How much larger mean angle deviation and the largest distance to the reference may get.
@@ -67,7 +57,7 @@ const GROWTH: f64 = 1.1;
 const RMS_GROWTH: f64 = 1.2;
 /// How much farther from edges of the mesh the creases of the reference may get: on the mean, and
 /// at most.
-const CREASE_GROWTH: [f64; 2] = [1.1, 1.25];
+const CREASE_GROWTH: [f64; 2] = [1.0, 1.25];
 /// Distances are sampled; on a flat plate all there is to see is slivers at its round holes, and
 /// its largest distance is anything from 0.00029 to 0.00037 with other samples.
 const NOISE_REL: [f64; 2] = [1e-6, 5e-5];
@@ -109,14 +99,7 @@ impl Faults {
     }
 
     fn at_most(&mut self, what: &str, value: f64, most: f64) {
-        let line = format!("{what} is {value:.5}, at most {most:.5} wanted");
-        let known = NOT_YET.iter().find(|known| (known.0, known.1) == (self.name, what));
-        if let Some(&(name, _, until_then)) = known.filter(|_| value > most) {
-            say(&format!("NOT YET: {name}: {line}"));
-            self.unless(value <= until_then, || format!("{line}; it was {until_then} once"));
-            return;
-        }
-        self.unless(value <= most, || line);
+        self.unless(value <= most, || format!("{what} is {value:.5}, at most {most:.5} wanted"));
     }
 }
 
@@ -128,7 +111,7 @@ fn judge_numbers(before: &Summary, after: &Summary, faults: &mut Faults) {
     let share = after.irregular_elements as f64 / before.irregular_elements as f64;
     faults.at_most("E relative to the input", share, most);
     let most = (MOST_T_JUNCTIONS * before.t_junctions as f64).floor();
-    faults.at_most(T_JUNCTIONS, after.t_junctions as f64, most);
+    faults.at_most("T-junctions", after.t_junctions as f64, most);
     let [mean, largest] = NOISE_REL;
     for (what, of, growth, noise) in [
         ("mean angle deviation", (|s| s.fig10_mean) as Figure, GROWTH, 0.0),
@@ -154,7 +137,7 @@ fn judge_connectivity(before: &Metrics, after: &Metrics, faults: &mut Faults) {
     faults.unless(new.gauss_bonnet_exact, || "Gauss-Bonnet is not exact".into());
     faults.unless(new.degenerate.connectivity.is_clean(), || format!("{:?}", new.degenerate));
     let inverted = |m: &Metrics| m.quality.scaled_jacobian_quads.map_or(0, |j| j.count_below_0);
-    faults.at_most(INVERTED, inverted(after) as f64, inverted(before) as f64);
+    faults.at_most("inverted quads", inverted(after) as f64, inverted(before) as f64);
     let flipped = |s: &Summary| s.flipped_faces.unwrap_or(0) as f64;
     faults.at_most("flipped faces", flipped(new), flipped(old));
 }
@@ -176,8 +159,8 @@ fn judge_features(before: &Metrics, after: &Metrics, faults: &mut Faults) {
     let distance = |m: &Metrics| m.reference.as_ref()?.features.to_any_mesh_edge;
     let (Some(old), Some(new)) = (distance(before), distance(after)) else { return };
     let ([mean, largest], [on_mean, at_most]) = (NOISE_REL, CREASE_GROWTH);
-    faults.at_most(CREASES, new.mean, on_mean * old.mean + mean);
-    faults.at_most(FARTHEST_CREASE, new.max, at_most * old.max + largest);
+    faults.at_most("mean distance of creases", new.mean, on_mean * old.mean + mean);
+    faults.at_most("largest distance of creases", new.max, at_most * old.max + largest);
 }
 
 /// How many of `old` are not in `new`; both are sorted.
@@ -234,9 +217,11 @@ fn real_meshes_become_clean_and_keep_their_shape() {
 
 /// Largest E that the preset `clean` may leave, relative to the input: what has been reached and a
 /// fifth more.
-const MOST_E_CLEAN: [(&str, f64); 2] = [("goathead_ml", 0.027), ("spot_im3k", 0.117)];
+const MOST_E_CLEAN: [(&str, f64); 3] =
+    [("goathead_ml", 0.027), ("penguin_mlpair", 0.021), ("spot_im3k", 0.117)];
 
-/// The preset that spares no effort resamples features most: it must not take faces over grooves.
+/// The preset that spares no effort moves most: it must not take faces over grooves, nor edges away
+/// from the few creases of the penguin.
 #[test]
 fn the_clean_preset_keeps_the_distance_too() {
     let Some(folder) = data_folder("cleaning with the preset `clean`") else { return };
