@@ -5,10 +5,11 @@
 
 DATA is a folder with NAME.obj and NAME.ref.obj; without MESH, all of them. Runs the release
 build (`cargo build --release`) with the default preset, one `--set` after the other. Figures are
-sums of irregular elements and geometric means of the ratio of angle deviation after to before.
+sums of irregular elements, and geometric means of the ratio of two things after to before: the
+angle deviation, and the mean distance of the creases of the reference to edges, if it has any.
 """
 import json
-import math
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -27,6 +28,9 @@ VARIANTS = [
     ("crossings of features", ["plan.crossings=0"]),
     ("sliding along features", ["plan.slides=0"]),
     ("crossings and sliding", ["plan.crossings=0", "plan.slides=0"]),
+    ("settling on creases", ["plan.settles_edges=0"]),
+    ("drawing edges to creases", ["plan.crease_worth=0"]),
+    ("settling and drawing", ["plan.settles_edges=0", "plan.crease_worth=0"]),
     ("the global plan: greedy alone", ["plan.global=0"]),
     ("refills around neighbours: the global plan alone", ["plan.partners=0"]),
     ("global plan and neighbours", ["plan.global=0", "plan.partners=0"]),
@@ -60,19 +64,23 @@ def clean(data: Path, name: str, settings: list[str], folder: Path) -> dict:
 def main() -> None:
     data = Path(sys.argv[1])
     names = sys.argv[2:] or sorted(p.name[: -len(".ref.obj")] for p in data.glob("*.ref.obj"))
-    print("| switched off | " + " | ".join(names) + " | Σ E | angle ratio | T |")
-    print("|---" * (len(names) + 4) + "|")
+    print("| switched off | " + " | ".join(names) + " | Σ E | angle ratio | crease ratio | T |")
+    print("|---" * (len(names) + 5) + "|")
     for title, settings in VARIANTS:
-        elements, angles, hanging = [], [], 0
+        elements, angles, creases, hanging = [], [], [], 0
         with tempfile.TemporaryDirectory() as folder:
             for name in names:
                 report = clean(data, name, settings, Path(folder))
                 before, after = report["before"]["summary"], report["after"]["summary"]
                 elements.append(after["irregular_elements"])
-                angles.append(math.log(after["fig10_mean"] / before["fig10_mean"]))
+                angles.append(after["fig10_mean"] / before["fig10_mean"])
+                near = [report[when]["reference"]["features"] for when in ("before", "after")]
+                if near[0]["reference_edges"] > 0:
+                    near = [n["to_any_mesh_edge"]["mean"] for n in near]
+                    creases.append(near[1] / near[0])
                 hanging += after["t_junctions"]
-        ratio = math.exp(sum(angles) / len(angles))
-        cells = [title, *map(str, elements), str(sum(elements)), f"{ratio:.3f}", str(hanging)]
+        ratios = [f"{statistics.geometric_mean(r):.3f}" if r else "" for r in (angles, creases)]
+        cells = [title, *map(str, elements), str(sum(elements)), *ratios, str(hanging)]
         print("| " + " | ".join(cells) + " |", flush=True)
 
 
