@@ -8,7 +8,7 @@ use super::gate::Shape;
 use super::lines::Rails;
 use crate::mesh::{Point, Vector};
 use crate::sqrtcc::{QuadMesh, Vertex};
-use crate::surface::{Reference, Segments};
+use crate::surface::{Crease, Reference, Segments};
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 use smallvec::SmallVec;
@@ -31,39 +31,46 @@ const FAIR_JACOBIAN: f64 = 0.6;
 #[derive(Debug, Clone)]
 pub(super) struct Creases {
     probes: Vec<Point>,
+    /// Length that each probe stands for, in units of the file.
+    step: f64,
     /// Mean edge of the mesh, in units of the file.
     edge: f64,
 }
 
 impl Creases {
-    /// The creases of `reference` of at least that angle, for a mesh of such a mean edge. O(n).
-    pub(super) fn new(reference: &Reference, angle_deg: f64, edge: f64) -> Self {
-        let step = edge / PROBES_PER_EDGE;
+    /// The creases of `reference` of at least that angle, for a mesh of so many faces and such a mean
+    /// edge. O(n).
+    pub(super) fn new(reference: &Reference, angle_deg: f64, faces: usize, edge: f64) -> Self {
+        let ends = |c: &Crease| [c.a, c.b].map(|v| reference.points()[v as usize]);
+        let sharp = || reference.creases().iter().filter(|c| c.angle_deg >= angle_deg).map(ends);
+        let total: f64 = sharp().map(|[a, b]| (b - a).norm()).sum();
+        // A mesh cannot follow more than there is of its edges.
+        let most = PROBES_PER_EDGE * (2 * faces.max(1)) as f64;
+        let step = (edge / PROBES_PER_EDGE).max(total / most);
         let mut probes = Vec::new();
         // Length since the last probe: each stands for as much, however finely creases are divided.
         let mut since = step / 2.0;
-        for crease in reference.creases().iter().filter(|c| c.angle_deg >= angle_deg) {
-            let [a, b] = [crease.a, crease.b].map(|v| reference.points()[v as usize]);
+        for [a, b] in sharp().filter(|[a, b]| a != b) {
             let length = (b - a).norm();
             let count = ((since + length) / step).floor();
             let at = |i: u32| a + (b - a) * ((f64::from(i) * step - since) / length);
             probes.extend((1..=count as u32).map(at));
             since += length - count * step;
         }
-        Self { probes, edge }
+        Self { probes, step, edge }
     }
 
     /// Moves free vertices to where edges are nearer to the creases, as long as an edge that is nearer
     /// along its length by its length is worth the `worth_deg` degrees by which corners around deviate
-    /// more, and no quad becomes poor; whether any has moved. O(n log n), parallel; independent of the number of
-    /// threads.
+    /// more, and no quad becomes poor; whether any has moved. O(n log n), parallel; independent of the
+    /// number of threads.
     pub(super) fn draw_near(&self, mesh: &mut QuadMesh, rails: Rails, worth_deg: f64) -> bool {
         let mut active: Vec<(Vertex, Vec<Point>)> = self.served(mesh).into_iter().collect();
         let mut any = false;
         for _ in 0..SWEEPS {
             let still = &*mesh;
             let better = |(v, probes): &(Vertex, Vec<Point>)| {
-                Site::new(still, *v, probes, self.edge).better(rails, worth_deg)
+                Site::new(self, still, *v, probes).better(rails, worth_deg)
             };
             let better: Vec<Option<Point>> = active.par_iter().map(better).collect();
             let mut moved: FxHashSet<Vertex> = FxHashSet::default();
@@ -91,12 +98,14 @@ impl Creases {
     }
 
     /// Free vertices, ascending, each with the probes whose nearest edge is beside one of its faces.
+    /// What is farther away than an edge is long is no crease of this mesh.
     fn served(&self, mesh: &QuadMesh) -> BTreeMap<Vertex, Vec<Point>> {
         let edges = Edges::new(mesh);
         let nearest: Vec<_> = self.probes.par_iter().map(|p| edges.nearest(p)).collect();
         let mut served: BTreeMap<Vertex, Vec<Point>> = BTreeMap::new();
-        for (&probe, ends) in self.probes.iter().zip(nearest) {
-            let corners = corners_around(mesh, ends.into_iter().flatten());
+        for (&probe, nearest) in self.probes.iter().zip(nearest) {
+            let Some((ends, _)) = nearest.filter(|n| n.1 <= self.edge) else { continue };
+            let corners = corners_around(mesh, ends);
             for v in corners.into_iter().filter(|&v| !mesh.is_held(v)) {
                 served.entry(v).or_default().push(probe);
             }
@@ -122,9 +131,9 @@ impl Edges {
         Self { tree, ends: order.iter().map(|&e| ends[e as usize]).collect() }
     }
 
-    /// Ends of the nearest edge.
-    fn nearest(&self, place: &Point) -> Option<[Vertex; 2]> {
-        self.tree.nearest(place).map(|(edge, _)| self.ends[edge as usize])
+    /// Ends of the nearest edge, and how far it is.
+    fn nearest(&self, place: &Point) -> Option<([Vertex; 2], f64)> {
+        self.tree.nearest(place).map(|(edge, distance)| (self.ends[edge as usize], distance))
     }
 }
 
@@ -146,7 +155,8 @@ fn corners_around(
 }
 
 /// A vertex that may move for the probes around it.
-struct Site {
+struct Site<'a> {
+    creases: &'a Creases,
     at: Point,
     /// Corners of its faces, each from the vertex on.
     faces: SmallVec<[SmallVec<[Point; 8]>; 8]>,
@@ -154,12 +164,10 @@ struct Site {
     ends: SmallVec<[Point; 8]>,
     /// The probes, and how far each is from the edges around that do not move with the vertex.
     probes: Vec<(Point, f64)>,
-    /// Mean edge of the mesh, in units of the file.
-    edge: f64,
 }
 
-impl Site {
-    fn new(mesh: &QuadMesh, v: Vertex, probes: &[Point], edge: f64) -> Self {
+impl<'a> Site<'a> {
+    fn new(creases: &'a Creases, mesh: &QuadMesh, v: Vertex, probes: &[Point]) -> Self {
         let position = |w| mesh.position(w);
         let around = corners_around(mesh, [v]);
         let others = around.iter().filter(|&&w| w != v);
@@ -176,11 +184,11 @@ impl Site {
             corners.into_iter().map(position).collect()
         };
         Self {
+            creases,
             at: position(v),
             faces: faces_at(mesh, v).map(from_here).collect(),
             ends: mesh.diagonals(v).map(position).collect(),
             probes: probes.iter().map(with_rest).collect(),
-            edge,
         }
     }
 
@@ -191,13 +199,13 @@ impl Site {
             let nearest = self.ends.iter().map(|end| along(probe, at, end).1);
             nearest.fold(*rest, f64::min)
         });
-        distances.sum::<f64>() / (PROBES_PER_EDGE * self.edge)
+        distances.sum::<f64>() * self.creases.step / self.creases.edge.powi(2)
     }
 
     /// Where the vertex, or an edge at it, would lie on a probe.
     fn aims(&self) -> impl Iterator<Item = Point> + '_ {
         self.probes.iter().flat_map(|&(place, rest)| {
-            let onto = Some(place).filter(|p| (p - self.at).norm() < self.edge);
+            let onto = Some(place).filter(|p| (p - self.at).norm() < self.creases.edge);
             let edges = self.ends.iter().map(|end| (along(&place, &self.at, end), end));
             let nearest = edges.min_by(|a, b| a.0.1.total_cmp(&b.0.1));
             let nearest = nearest.filter(|((share, d), _)| *d < rest && 1.0 - share > LEVER);
@@ -273,11 +281,12 @@ mod tests {
     use crate::surface::{FeatureOptions, SharpLines, trial};
     use fixedbitset::FixedBitSet;
 
-    /// A square with a fold along a line that runs askew over its quads.
-    fn folded() -> (Reference, QuadMesh) {
+    /// A square with a fold along a line, and a mesh on it, so far along x, over whose quads the line
+    /// runs askew.
+    fn folded(mut mesh: PolyMesh, x: f64) -> (Reference, QuadMesh) {
         let bend = |p: &Point| Point::new(p.x, p.y, (p.x - 0.35 * p.y - 2.3).abs());
-        let mut mesh = trial::grid(8);
-        mesh.set_points(mesh.points().iter().map(bend).collect());
+        let place = |p: &Point| bend(&(p + Vector::x() * x));
+        mesh.set_points(mesh.points().iter().map(place).collect());
         let crease = [0.0, 8.0].map(|y| bend(&Point::new(0.35 * y + 2.3, y, 0.0)));
         let corner = |x: f64, y: f64| bend(&Point::new(x, y, 0.0));
         let mut points =
@@ -291,10 +300,10 @@ mod tests {
 
     /// Mean distance of the crease to the edges, and deviation at corners, before and after.
     fn drawn(worth_deg: f64) -> [(f64, f64); 2] {
-        let (reference, mut q) = folded();
+        let (reference, mut q) = folded(trial::grid(8), 0.0);
         let lines = SharpLines::new(&reference, &FeatureOptions::default(), 1.0);
         let rails = Rails { reference: &reference, lines: &lines, tolerance: 0.2 };
-        let creases = Creases::new(&reference, 40.0, 1.0);
+        let creases = Creases::new(&reference, 40.0, 64, 1.0);
         let state = |q: &QuadMesh| {
             let distances = Edges::new(q).tree.distances(&creases.probes);
             let faces = q.vertices().filter(|&f| q.is_face(f) && !q.is_ghost(f));
@@ -326,12 +335,23 @@ mod tests {
     }
 
     #[test]
+    fn a_crease_away_from_the_mesh_is_none_of_its_own() {
+        let (reference, mut q) = folded(trial::grid(2), 6.0);
+        let lines = SharpLines::new(&reference, &FeatureOptions::default(), 1.0);
+        let rails = Rails { reference: &reference, lines: &lines, tolerance: 0.2 };
+        let creases = Creases::new(&reference, 40.0, 4, 1.0);
+        assert!(!creases.probes.is_empty() && q.vertices().any(|v| !q.is_held(v)));
+        assert!(!creases.draw_near(&mut q, rails, 1000.0));
+    }
+
+    #[test]
     fn probes_stand_for_as_much_of_a_crease_however_it_is_divided() {
-        let count = |n: u32| {
+        let count = |n: u32, faces: usize| {
             let reference = Reference::new(&trial::cube(n, 0.0, 0.0)).unwrap();
-            Creases::new(&reference, 40.0, 0.5).probes.len()
+            Creases::new(&reference, 40.0, faces, 0.5).probes.len()
         };
         // Twelve edges of a length of four mean edges each.
-        assert_eq!([count(1), count(3), count(50)], [12 * 4 * 8; 3]);
+        assert_eq!([1, 3, 50].map(|n| count(n, 600)), [12 * 4 * 8; 3]);
+        assert_eq!(count(3, 6), 12 * 8, "no more than the edges of six faces can follow");
     }
 }
