@@ -16,6 +16,8 @@ use std::collections::BTreeMap;
 
 /// Probes on as much of the creases as the mean edge of the mesh is long.
 const PROBES_PER_EDGE: f64 = 8.0;
+/// What is farther from all edges of a mesh than that, in mean edges, is no crease of it.
+const REACH: f64 = 2.0;
 /// Most sweeps over the vertices near creases.
 const SWEEPS: usize = 8;
 /// Shares of the way to where an edge would lie on a probe that are tried.
@@ -98,13 +100,12 @@ impl Creases {
     }
 
     /// Free vertices, ascending, each with the probes whose nearest edge is beside one of its faces.
-    /// What is farther away than an edge is long is no crease of this mesh.
     fn served(&self, mesh: &QuadMesh) -> BTreeMap<Vertex, Vec<Point>> {
         let edges = Edges::new(mesh);
         let nearest: Vec<_> = self.probes.par_iter().map(|p| edges.nearest(p)).collect();
         let mut served: BTreeMap<Vertex, Vec<Point>> = BTreeMap::new();
         for (&probe, nearest) in self.probes.iter().zip(nearest) {
-            let Some((ends, _)) = nearest.filter(|n| n.1 <= self.edge) else { continue };
+            let Some((ends, _)) = nearest.filter(|n| n.1 <= REACH * self.edge) else { continue };
             let corners = corners_around(mesh, ends);
             for v in corners.into_iter().filter(|&v| !mesh.is_held(v)) {
                 served.entry(v).or_default().push(probe);
