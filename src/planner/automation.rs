@@ -205,9 +205,16 @@ impl Automation<'_> {
             let moved = before.vertex_ids.iter().map(|&v| mesh.position(v)).collect();
             let options = (self.smooth, self.relax);
             let budget = Some(self.smooth_budget());
-            let points =
-                smooth::mend(&before.mesh, &before.held, moved, self.reference, options, budget);
+            let points = smooth::take_back(
+                &before.mesh,
+                &before.held,
+                moved,
+                self.reference,
+                options,
+                budget,
+            );
             place(mesh, &before, points);
+            mesh.commit();
         }
         Ok(())
     }
@@ -336,7 +343,6 @@ fn place(mesh: &mut QuadMesh, polygons: &Lowered, points: Vec<Point>) {
     for (&v, point) in polygons.vertex_ids.iter().zip(points) {
         mesh.set_position(v, point);
     }
-    mesh.commit();
 }
 
 /// The faces of the polygon mesh. Parallel.

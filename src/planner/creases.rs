@@ -15,11 +15,13 @@ use smallvec::SmallVec;
 use std::collections::BTreeMap;
 
 /// Probes on as much of the creases as the mean edge of the mesh is long.
-const PROBES_PER_EDGE: f64 = 8.0;
+const PROBES_PER_EDGE: f64 = 4.0;
 /// What is farther from all edges of a mesh than that, in mean edges, is no crease of it.
 const REACH: f64 = 2.0;
 /// Most sweeps over the vertices near creases.
 const SWEEPS: usize = 8;
+/// Probes, the farthest ones, that a vertex tries to come to.
+const AIMS: usize = 20;
 /// Shares of the way to where an edge would lie on a probe that are tried.
 const STRIDES: [f64; 4] = [1.0, 0.5, 0.25, 0.1];
 /// Nearer to this end of an edge than that share of it, a probe is left to the other one.
@@ -52,7 +54,7 @@ impl Creases {
         let mut probes = Vec::new();
         // Length since the last probe: each stands for as much, however finely creases are divided.
         let mut since = step / 2.0;
-        for [a, b] in sharp().filter(|[a, b]| a != b) {
+        for [a, b] in sharp().filter(|[a, b]| (b - a).norm() > 0.0) {
             let length = (b - a).norm();
             let count = ((since + length) / step).floor();
             let at = |i: u32| a + (b - a) * ((f64::from(i) * step - since) / length);
@@ -163,7 +165,8 @@ struct Site<'a> {
     faces: SmallVec<[SmallVec<[Point; 8]>; 8]>,
     /// The other ends of its edges.
     ends: SmallVec<[Point; 8]>,
-    /// The probes, and how far each is from the edges around that do not move with the vertex.
+    /// The probes, the farthest ones first, and how far each is from the edges around that do not move
+    /// with the vertex.
     probes: Vec<(Point, f64)>,
 }
 
@@ -174,38 +177,53 @@ impl<'a> Site<'a> {
         let others = around.iter().filter(|&&w| w != v);
         let rest = others.flat_map(|&w| mesh.diagonals(w).filter(|&x| x != v).map(move |x| [w, x]));
         let rest: Vec<[Point; 2]> = rest.map(|ends| ends.map(position)).collect();
-        let with_rest = |&probe: &Point| {
-            let distances = rest.iter().map(|[a, b]| along(&probe, a, b).1);
-            (probe, distances.fold(f64::INFINITY, f64::min))
-        };
         let from_here = |f: Vertex| {
             let mut corners: SmallVec<[Vertex; 8]> = mesh.neighbours(f).collect();
             let first = corners.iter().position(|&w| w == v).unwrap_or(0);
             corners.rotate_left(first);
             corners.into_iter().map(position).collect()
         };
-        Self {
+        let mut site = Self {
             creases,
             at: position(v),
             faces: faces_at(mesh, v).map(from_here).collect(),
             ends: mesh.diagonals(v).map(position).collect(),
-            probes: probes.iter().map(with_rest).collect(),
-        }
+            probes: Vec::new(),
+        };
+        let far = |&probe: &Point| {
+            let distances = rest.iter().map(|[a, b]| along(&probe, a, b).1);
+            let probe = (probe, distances.fold(f64::INFINITY, f64::min));
+            (site.distance(&probe, &site.at), probe)
+        };
+        let mut far: Vec<_> = probes.iter().map(far).collect();
+        far.sort_by(|a, b| b.0.total_cmp(&a.0));
+        site.probes = far.into_iter().map(|(_, probe)| probe).collect();
+        site
     }
 
-    /// How far the creases around are from edges with the vertex there: length times distance, in
-    /// squared mean edges.
-    fn apart(&self, at: &Point) -> f64 {
-        let distances = self.probes.iter().map(|(probe, rest)| {
-            let nearest = self.ends.iter().map(|end| along(probe, at, end).1);
-            nearest.fold(*rest, f64::min)
-        });
-        distances.sum::<f64>() * self.creases.step / self.creases.edge.powi(2)
+    /// How far the creases around are from edges with the vertex there, length times distance, in
+    /// squared mean edges; `None` if that is not less than `most`.
+    fn apart(&self, at: &Point, most: f64) -> Option<f64> {
+        let each = self.creases.step / self.creases.edge.powi(2);
+        let mut sum = 0.0;
+        for probe in &self.probes {
+            sum += each * self.distance(probe, at);
+            if sum >= most {
+                return None;
+            }
+        }
+        Some(sum)
+    }
+
+    /// How far a probe is from edges with the vertex there, in units of the file.
+    fn distance(&self, (probe, rest): &(Point, f64), at: &Point) -> f64 {
+        let nearest = self.ends.iter().map(|end| along(probe, at, end).1);
+        nearest.fold(*rest, f64::min)
     }
 
     /// Where the vertex, or an edge at it, would lie on a probe.
     fn aims(&self) -> impl Iterator<Item = Point> + '_ {
-        self.probes.iter().flat_map(|&(place, rest)| {
+        self.probes.iter().take(AIMS).flat_map(|&(place, rest)| {
             let onto = Some(place).filter(|p| (p - self.at).norm() < self.creases.edge);
             let edges = self.ends.iter().map(|end| (along(&place, &self.at, end), end));
             let nearest = edges.min_by(|a, b| a.0.1.total_cmp(&b.0.1));
@@ -220,7 +238,7 @@ impl<'a> Site<'a> {
 
     /// The best of a few places for the vertex, if one is better than where it is.
     fn better(mut self, rails: Rails, worth_deg: f64) -> Option<Point> {
-        let before = self.apart(&self.at);
+        let before = self.apart(&self.at, f64::INFINITY)?;
         if before <= PROGRESS {
             return None;
         }
@@ -232,10 +250,7 @@ impl<'a> Site<'a> {
         for (aim, stride) in aims.iter().flat_map(|aim| STRIDES.map(|stride| (aim, stride))) {
             let towards = self.at + (aim - self.at) * stride;
             let place = rails.reference.closest_near(&towards, near).point;
-            let apart = self.apart(&place);
-            if apart >= least {
-                continue;
-            }
+            let Some(apart) = self.apart(&place, least) else { continue };
             let then = self.shape_with(place);
             let price = apart + (then.angles() - now.angles()) / worth_deg;
             if price < least
@@ -352,7 +367,7 @@ mod tests {
             Creases::new(&reference, 40.0, faces, 0.5).probes.len()
         };
         // Twelve edges of a length of four mean edges each.
-        assert_eq!([1, 3, 50].map(|n| count(n, 600)), [12 * 4 * 8; 3]);
-        assert_eq!(count(3, 6), 12 * 8, "no more than the edges of six faces can follow");
+        assert_eq!([1, 3, 50].map(|n| count(n, 600)), [12 * 4 * 4; 3]);
+        assert_eq!(count(3, 6), 12 * 4, "no more than the edges of six faces can follow");
     }
 }

@@ -99,7 +99,7 @@ pub fn smooth(
 /// # Panics
 /// If there is not one entry of `held`, and of `moved`, for each vertex: that is a bug of the caller.
 #[must_use]
-pub fn mend(
+pub fn take_back(
     mesh: &PolyMesh,
     held: &[bool],
     moved: Vec<Point>,
@@ -406,7 +406,7 @@ mod tests {
         moved[140] += crate::mesh::Vector::x() * 0.1;
         let options = (&SmoothOptions::default(), &RelaxOptions::default());
         let budget = Budget { hausdorff: 0.05, rms: 1.0 };
-        let points = mend(&mesh, &held, moved.clone(), &reference, options, Some(budget));
+        let points = take_back(&mesh, &held, moved.clone(), &reference, options, Some(budget));
         let off = |v: usize| (points[v] - mesh.points()[v]).norm();
         assert!(off(28) <= 0.05 && off(36) < 0.6, "{} {}", off(28), off(36));
         assert_eq!(points[140], moved[140]);

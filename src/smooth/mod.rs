@@ -25,7 +25,7 @@ use crate::knobs::knobs;
 pub use around::Surroundings;
 pub(crate) use fit::{Shape, polygon, rectangle};
 pub(crate) use global::limits;
-pub use global::{SmoothReport, held_vertices, mend, smooth};
+pub use global::{SmoothReport, held_vertices, smooth, take_back};
 pub use guard::Budget;
 pub(crate) use guard::{Guard, Trace};
 pub use region::{Orientation, Region, RelaxReport, fit_local, orientation, relax_local};
