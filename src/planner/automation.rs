@@ -199,8 +199,9 @@ impl Automation<'_> {
 
     /// Draws edges to creases, within the limits, where an edge length is worth so many degrees.
     fn draw_near(&self, mesh: &mut QuadMesh, worth_deg: f64) -> Result<(), MeshError> {
-        let before = lower(mesh, &[String::new()])?;
         let creases = Creases::new(self.reference, self.crease_deg, self.faces, self.mean_edge);
+        let Some(creases) = creases else { return Ok(()) };
+        let before = lower(mesh, &[String::new()])?;
         if creases.draw_near(mesh, self.rails(), worth_deg) {
             let moved = before.vertex_ids.iter().map(|&v| mesh.position(v)).collect();
             let options = (self.smooth, self.relax);

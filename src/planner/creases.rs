@@ -5,7 +5,7 @@
 //! moved until edges lie on them again, as far as the corners around are worth it.
 
 use super::gate::Shape;
-use super::lines::Rails;
+use super::lines::{Rails, faces_at};
 use crate::mesh::{Point, Vector};
 use crate::sqrtcc::{QuadMesh, Vertex};
 use crate::surface::{Crease, Reference, Segments};
@@ -28,8 +28,6 @@ const STRIDES: [f64; 4] = [1.0, 0.5, 0.25, 0.1];
 const LEVER: f64 = 0.3;
 /// A move brings creases nearer by this at least: length times distance, in squared mean edges.
 const PROGRESS: f64 = 0.003;
-/// Quads that were better than that may not get a lower scaled Jacobian than this.
-const FAIR_JACOBIAN: f64 = 0.6;
 
 /// The creases of a reference, for a mesh.
 #[derive(Debug, Clone)]
@@ -42,9 +40,14 @@ pub(super) struct Creases {
 }
 
 impl Creases {
-    /// The creases of `reference` of at least that angle, for a mesh of so many faces and such a mean
-    /// edge. O(n).
-    pub(super) fn new(reference: &Reference, angle_deg: f64, faces: usize, edge: f64) -> Self {
+    /// The creases of `reference` of at least that angle, if it has any, for a mesh of so many faces
+    /// and such a mean edge. O(n).
+    pub(super) fn new(
+        reference: &Reference,
+        angle_deg: f64,
+        faces: usize,
+        edge: f64,
+    ) -> Option<Self> {
         let ends = |c: &Crease| [c.a, c.b].map(|v| reference.points()[v as usize]);
         let sharp = || reference.creases().iter().filter(|c| c.angle_deg >= angle_deg).map(ends);
         let total: f64 = sharp().map(|[a, b]| (b - a).norm()).sum();
@@ -61,7 +64,7 @@ impl Creases {
             probes.extend((1..=count as u32).map(at));
             since += length - count * step;
         }
-        Self { probes, step, edge }
+        (!probes.is_empty()).then_some(Self { probes, step, edge })
     }
 
     /// Moves free vertices to where edges are nearer to the creases, as long as an edge that is nearer
@@ -138,11 +141,6 @@ impl Edges {
     fn nearest(&self, place: &Point) -> Option<([Vertex; 2], f64)> {
         self.tree.nearest(place).map(|(edge, distance)| (self.ends[edge as usize], distance))
     }
-}
-
-/// Faces of the polygon mesh at a vertex.
-fn faces_at(mesh: &QuadMesh, v: Vertex) -> impl Iterator<Item = Vertex> + '_ {
-    mesh.neighbours(v).filter(|&f| !mesh.is_ghost(f))
 }
 
 /// Corners of the faces at these vertices, ascending.
@@ -253,11 +251,7 @@ impl<'a> Site<'a> {
             let Some(apart) = self.apart(&place, least) else { continue };
             let then = self.shape_with(place);
             let price = apart + (then.angles() - now.angles()) / worth_deg;
-            if price < least
-                && then.is_about_as_good_as(&now)
-                && then.jacobian() >= now.jacobian().min(FAIR_JACOBIAN)
-                && self.off(rails) <= most
-            {
+            if price < least && then.is_as_fair_as(&now) && self.off(rails) <= most {
                 (least, best) = (price, Some(place));
             }
         }
@@ -292,7 +286,7 @@ fn along(place: &Point, a: &Point, b: &Point) -> (f64, f64) {
 mod tests {
     use super::*;
     use crate::mesh::PolyMesh;
-    use crate::planner::gate::shape_of;
+    use crate::planner::gate::{FAIR, shape_of};
     use crate::sqrtcc::lift;
     use crate::surface::{FeatureOptions, SharpLines, trial};
     use fixedbitset::FixedBitSet;
@@ -319,12 +313,12 @@ mod tests {
         let (reference, mut q) = folded(trial::grid(8), 0.0);
         let lines = SharpLines::new(&reference, &FeatureOptions::default(), 1.0);
         let rails = Rails { reference: &reference, lines: &lines, tolerance: 0.2 };
-        let creases = Creases::new(&reference, 40.0, 64, 1.0);
+        let creases = Creases::new(&reference, 40.0, 64, 1.0).unwrap();
         let state = |q: &QuadMesh| {
             let distances = Edges::new(q).tree.distances(&creases.probes);
             let faces = q.vertices().filter(|&f| q.is_face(f) && !q.is_ghost(f));
             let shape = shape_of(q, faces);
-            assert!(shape.jacobian() >= FAIR_JACOBIAN);
+            assert!(shape.jacobian() >= FAIR);
             (distances.iter().sum::<f64>() / distances.len() as f64, shape.angles())
         };
         let before = state(&q);
@@ -355,7 +349,7 @@ mod tests {
         let (reference, mut q) = folded(trial::grid(2), 6.0);
         let lines = SharpLines::new(&reference, &FeatureOptions::default(), 1.0);
         let rails = Rails { reference: &reference, lines: &lines, tolerance: 0.2 };
-        let creases = Creases::new(&reference, 40.0, 4, 1.0);
+        let creases = Creases::new(&reference, 40.0, 4, 1.0).unwrap();
         assert!(!creases.probes.is_empty() && q.vertices().any(|v| !q.is_held(v)));
         assert!(!creases.draw_near(&mut q, rails, 1000.0));
     }
@@ -364,7 +358,7 @@ mod tests {
     fn probes_stand_for_as_much_of_a_crease_however_it_is_divided() {
         let count = |n: u32, faces: usize| {
             let reference = Reference::new(&trial::cube(n, 0.0, 0.0)).unwrap();
-            Creases::new(&reference, 40.0, faces, 0.5).probes.len()
+            Creases::new(&reference, 40.0, faces, 0.5).unwrap().probes.len()
         };
         // Twelve edges of a length of four mean edges each.
         assert_eq!([1, 3, 50].map(|n| count(n, 600)), [12 * 4 * 4; 3]);

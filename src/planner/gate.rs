@@ -173,6 +173,9 @@ pub struct Shape {
 
 /// Quads below this scaled Jacobian must not become worse all together.
 const POOR: f64 = 0.4;
+/// Quads that were better than that may not get a lower scaled Jacobian than this where vertices are
+/// moved for creases.
+pub(super) const FAIR: f64 = 0.6;
 /// Share of the normals at the corners of a face that must agree on which side is out.
 const AGREED: f64 = 0.5;
 
@@ -553,6 +556,11 @@ impl Shape {
         self.broken <= other.broken
             && self.deficit <= other.deficit + 0.02
             && self.jacobian >= other.jacobian.min(POOR)
+    }
+
+    /// [`Self::is_about_as_good_as`], and no quad that was fair is so no longer.
+    pub(super) fn is_as_fair_as(&self, other: &Self) -> bool {
+        self.is_about_as_good_as(other) && self.jacobian >= other.jacobian.min(FAIR)
     }
 
     /// Adds a face. One against whose area most of `up`, the sum of the unit normals of the

@@ -18,8 +18,6 @@ const SAGITTA: f64 = 0.3;
 /// How much corners around may deviate more, on the mean, where a vertex is put onto a crease; the
 /// smoothing that follows takes back a part.
 const SETTLING_DEG: f64 = 8.0;
-/// Quads that were better than that may not get a lower scaled Jacobian than this from it.
-const FAIR_JACOBIAN: f64 = 0.6;
 /// Shares of the way to the next vertex of the line that are tried.
 const STRIDES: [f64; 3] = [0.25, 0.1, 0.03];
 
@@ -34,6 +32,11 @@ pub(super) fn beside(mesh: &QuadMesh, v: Vertex) -> Option<[Vertex; 2]> {
     let ends = [next()?, next()?];
     let [a, b] = ends.map(|end| mesh.position(end) - mesh.position(v));
     (a.angle(&-b) <= CORNER_DEG.to_radians()).then_some(ends)
+}
+
+/// Faces of the polygon mesh at a vertex.
+pub(super) fn faces_at(mesh: &QuadMesh, v: Vertex) -> impl Iterator<Item = Vertex> + '_ {
+    mesh.neighbours(v).filter(|&f| !mesh.is_ghost(f))
 }
 
 /// What vertices slide on.
@@ -86,8 +89,7 @@ impl Rails<'_> {
 
     /// Puts `v` there and pins it, unless that spoils the faces around; whether it did.
     fn settles(&self, mesh: &mut QuadMesh, v: Vertex, place: Point) -> bool {
-        let faces: SmallVec<[Vertex; 8]> =
-            mesh.neighbours(v).filter(|&f| !mesh.is_ghost(f)).collect();
+        let faces: SmallVec<[Vertex; 8]> = faces_at(mesh, v).collect();
         let corners: u32 = faces.iter().map(|&f| mesh.valence(f)).sum();
         let state =
             |mesh: &QuadMesh| (shape_of(mesh, faces.iter().copied()), self.distance(mesh, &faces));
@@ -96,8 +98,7 @@ impl Rails<'_> {
         let (after, off) = state(mesh);
         let allowed = before.angles() + SETTLING_DEG * f64::from(corners);
         let is_fair = after.angles() <= allowed
-            && after.is_about_as_good_as(&before)
-            && after.jacobian() >= before.jacobian().min(FAIR_JACOBIAN)
+            && after.is_as_fair_as(&before)
             && off <= near.max(self.tolerance);
         if is_fair {
             mesh.pin(v);
@@ -118,8 +119,7 @@ impl Rails<'_> {
         let bend =
             |at: &Point| sagitta(self.lines, at, &before).max(sagitta(self.lines, at, &after));
         let most = bend(&at).max(self.tolerance);
-        let faces: SmallVec<[Vertex; 8]> =
-            mesh.neighbours(v).filter(|&f| !mesh.is_ghost(f)).collect();
+        let faces: SmallVec<[Vertex; 8]> = faces_at(mesh, v).collect();
         let now = shape_of(mesh, faces.iter().copied());
         let mut best = (now, at);
         for (end, stride) in [before, after].iter().flat_map(|e| STRIDES.map(|s| (e, s))) {
